@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu_simulation/device_body.h"
 
-#include <algorithm>
-
 #include "core/gpu_simulation/strand_batch.h"
+#include "runtime/engine/strand_model.h"
 
 namespace hairloom::gpu_simulation {
-namespace {
 
-using runtime::BonePose;
-using runtime::Float3;
-
-bool isFinitePose(const BonePose& bone) {
-    return isFinite(bone.x) && isFinite(bone.y) && isFinite(bone.z) && isFinite(bone.origin);
+bool hasBodyKernels(const gpu::DeviceInfo& info) {
+    return info.backend != gpu::Backend::Direct3D11;
 }
 
-}  // namespace
+std::string bodyError(const gpu::DeviceInfo& info, const runtime::SimulationSettings& settings,
+                      const runtime::BodyField* body) {
+    if (body == nullptr || !runtime::modelOf(settings.strandModel).meetsBody || hasBodyKernels(info))
+        return {};
+    return "Direct3D 11 does not keep hair out of the skin of a body, which the CPU does. Remove the skin "
+           "collider to use the GPU: spheres alone then hold the hair";
+}
 
 Result<DeviceBody> DeviceBody::make(gpu::Device& device, std::shared_ptr<const runtime::BodyField> body,
                                     const runtime::RestShape& shape) {
@@ -34,26 +35,16 @@ Result<DeviceBody> DeviceBody::make(gpu::Device& device, std::shared_ptr<const r
 }
 
 bool DeviceBody::takeFrame(const runtime::FrameInput& input, float teleportDistance, std::uint32_t substeps) {
-    std::span<const BonePose> to = input.body_ws;
-    const bool fits = !to.empty() && (to.size() == 1 || to.size() == field_->bones.size()) &&
-                      std::ranges::all_of(to, isFinitePose);
-    if (!fits) to = pose_;
-    if (to.empty()) return false;
-    std::span<const BonePose> from = pose_.size() == to.size() ? std::span<const BonePose>(pose_) : to;
-    bool moves = false;
-    for (std::size_t b = 0; b < to.size(); ++b) {
-        // A cut carries it along.
-        if (length(to[b].origin - from[b].origin) > teleportDistance) from = to;
-        moves = moves || !(to[b] == from[b]);
-    }
-    moving_.take(*field_, *cpuTable_, from, to, carriers_, substeps);
+    const runtime::BodyWay way = runtime::bodyWay(*field_, input.body_ws, pose_, teleportDistance);
+    if (way.to.empty()) return false;
+    moving_.take(*field_, *cpuTable_, way.from, way.to, carriers_, substeps);
     runtime::putBodyPoses(moving_, substeps, constants_, rows_);
-    if (to.data() != pose_.data()) pose_.assign(to.begin(), to.end());
-    return moves;
+    if (way.to.data() != pose_.data()) pose_.assign(way.to.begin(), way.to.end());
+    return way.moves;
 }
 
-void DeviceBody::moveOrigin(Float3 shift) {
-    for (BonePose& bone : pose_) bone.origin = bone.origin + shift;
+void DeviceBody::moveOrigin(runtime::Float3 shift) {
+    for (runtime::BonePose& bone : pose_) bone.origin = bone.origin + shift;
 }
 
 Status DeviceBody::upload(gpu::CommandList& list) {

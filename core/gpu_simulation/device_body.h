@@ -3,6 +3,7 @@
 // A body (hairloom/body_field.h) that rods on a GPU meet, as runtime::Engine has it on the CPU.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/gpu/device.h"
@@ -12,13 +13,18 @@
 
 namespace hairloom::gpu_simulation {
 
+/// Whether such a device has kernels that keep hair out of a body.
+bool hasBodyKernels(const gpu::DeviceInfo& info);
+/// Empty, or why strands of these settings cannot meet `body` there; null: there is none.
+std::string bodyError(const gpu::DeviceInfo& info, const runtime::SimulationSettings& settings,
+                      const runtime::BodyField* body);
+
 class DeviceBody {
   public:
     /// `shape`: of the strands that meet it. Errors: BodyField::problem(), what the device says.
     static Result<DeviceBody> make(gpu::Device& device, std::shared_ptr<const runtime::BodyField> body,
                                    const runtime::RestShape& shape);
 
-    const runtime::BodyField& field() const { return *field_; }
     /// Poses it for the substeps of a frame, of whose input it takes body_ws; whether it moves. What comes
     /// farther than `teleportDistance` is carried along.
     bool takeFrame(const runtime::FrameInput& input, float teleportDistance, std::uint32_t substeps);

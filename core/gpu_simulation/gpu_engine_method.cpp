@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu_simulation/gpu_engine_method.h"
 
-#include <fmt/format.h>
-
 #include "core/gpu_simulation/strand_engine.h"
 #include "core/groom/poses.h"
 #include "core/simulation/effect_switch.h"
@@ -35,10 +33,7 @@ class GpuEngineMethod final : public StrandMethod {
         }
     }
 
-    Status setPoseAmounts(std::span<const float> amounts) override {
-        if (engine_.setPoseAmounts(amounts)) return {};
-        return fail(fmt::format("there are {} amounts", amounts.size()), "expected one for each pose");
-    }
+    Status setPoseAmounts(std::span<const float> amounts) override { return engine_.setPoseAmounts(amounts); }
 
     void readPositions(std::span<runtime::Float3> positions_ws) const override {
         keep(engine_.readPositions(positions_ws));
@@ -113,7 +108,8 @@ MethodMaker engineOn(gpu::Device& device, std::shared_ptr<KernelLibrary> kernels
         if (!engine) return tl::unexpected(engine.error());
         if (auto given = engine->setPoses(poseViews(scene.groom()).views); !given)
             return tl::unexpected(given.error());
-        engine->setPoseAmounts(poseAmounts(scene.groom()));
+        if (auto set = engine->setPoseAmounts(poseAmounts(scene.groom())); !set)
+            return tl::unexpected(set.error());
         return std::make_unique<GpuEngineMethod>(std::move(*engine));
     };
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/gpu_simulation/strand_engine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -40,7 +42,8 @@ Result<StrandEngine> StrandEngine::make(gpu::Device& device, std::shared_ptr<Ker
     if (!layout.storage) layout.storage = gpuModelOf(settings.strandModel).storage;
     impl->batches = makeBatches(*impl->shape, layout, device.info().waves);
     if (const std::string why = impl->velocityError(); !why.empty()) return fail(why);
-    if (const std::string why = impl->bodyError(settings); !why.empty()) return fail(why);
+    if (const std::string why = bodyError(device.info(), settings, options.body.get()); !why.empty())
+        return fail(why);
     impl->placed.roots.resize(impl->shape->restRoots.size());
     if (auto made = impl->makeBuffers(); !made) return tl::unexpected(made.error());
     if (auto taken = impl->takeModel(settings); !taken) return tl::unexpected(taken.error());
@@ -66,15 +69,6 @@ std::string StrandEngine::Impl::velocityError() const {
         batches, [](const StrandBatch& batch) { return batch.shape.storage == StrandStorage::buffers; });
     if (!options.velocities || !inBuffers || device.info().backend != gpu::Backend::Direct3D11) return {};
     return "Direct3D 11 lets a kernel write to eight buffers, too few for velocities of strands this long";
-}
-
-/// Why this device cannot have strands of these settings meet the body; empty where it can.
-std::string StrandEngine::Impl::bodyError(const runtime::SimulationSettings& settings) const {
-    const bool meets = options.body != nullptr && runtime::modelOf(settings.strandModel).meetsBody;
-    if (!meets || device.info().backend != gpu::Backend::Direct3D11) return {};
-    return "Direct3D 11 has no kernels that keep hair out of the skin of a body. Remove the skin collider, "
-           "or "
-           "use the CPU";
 }
 
 /// The body, once strands are of a model that meets it.
@@ -250,7 +244,9 @@ Status StrandEngine::Impl::choose(const runtime::FrameInput& input, Float3 low, 
 Status StrandEngine::setSettings(const runtime::SimulationSettings& settings) {
     if (const std::string why = runtime::validationError(settings); !why.empty()) return fail(why);
     if (const std::string why = kernelError(settings); !why.empty()) return fail(why);
-    if (const std::string why = impl_->bodyError(settings); !why.empty()) return fail(why);
+    const runtime::BodyField* const body = impl_->options.body.get();
+    if (const std::string why = bodyError(impl_->device.info(), settings, body); !why.empty())
+        return fail(why);
     impl_->wanted = settings;
     return {};
 }
@@ -279,10 +275,12 @@ Status StrandEngine::setPoses(std::span<const runtime::PoseView> poses) {
     return {};
 }
 
-bool StrandEngine::setPoseAmounts(std::span<const float> amounts) {
-    if (amounts.size() != impl_->poseAmounts.size()) return false;
+Status StrandEngine::setPoseAmounts(std::span<const float> amounts) {
+    if (amounts.size() != impl_->poseAmounts.size())
+        return fail(fmt::format("there are {} amounts", amounts.size()),
+                    fmt::format("expected one for each pose, {}", impl_->poseAmounts.size()));
     impl_->takePoseAmounts(amounts);
-    return true;
+    return {};
 }
 
 Status StrandEngine::step(const runtime::FrameInput& input) {

@@ -80,8 +80,8 @@ class StrandEngine {
     const runtime::SimulationSettings& settings() const;
     /// As runtime::Engine::setPoses(), from the next frame on. Errors: why they are refused.
     Status setPoses(std::span<const runtime::PoseView> poses);
-    /// As FrameInput::poseAmounts sets them; false for another number than there are poses.
-    bool setPoseAmounts(std::span<const float> amounts);
+    /// As FrameInput::poseAmounts sets them. Errors: another number than there are poses.
+    Status setPoseAmounts(std::span<const float> amounts);
 
     /// Advances to the end of the frame. A dt that is not above 0 changes nothing. Returns before the device
     /// has done it; waits where more than two frames are under way.

@@ -236,6 +236,26 @@ void StrandEngine::Impl::forgetLastPiece(gpu::CommandList& list) {
         list.updateBuffer(reportBuffer, 4 * word, std::as_bytes(std::span(kNone)));
 }
 
+/// Poses the body where the frame needs it; how many substeps it takes beside the body, as many as usual
+/// without one.
+std::uint32_t StrandEngine::Impl::takeBody(const runtime::FrameInput& input, std::uint32_t usual) {
+    bodyMoves = false;
+    if (!followsBody()) {
+        if (body) body->setPose({});
+        return usual;
+    }
+    // Hair is as fast as its roots were, and slows in a tenth of a second. How fast it is the device knows.
+    // What is cut keeps its speed from before.
+    constexpr float kSlowing = 10.0f;  // 1/s
+    const bool cut = input.cut || !(placed.motion < wanted.teleportDistance);
+    fastRoots = std::max(cut ? 0.0f : placed.motion / input.dt, fastRoots * std::exp(-kSlowing * input.dt));
+    const std::uint32_t substeps = runtime::substepsBesideBody(fastRoots * input.dt, usual);
+    bodyMoves = body->takeFrame(input, runtime::teleportDistanceOf(wanted, input), substeps);
+    wakeAll = wakeAll || bodyMoves;
+    if (body->hasPose() && skinSpheres.size() == frameSpheres.given) frameSpheres.ofSkin = skinSpheres;
+    return substeps;
+}
+
 Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime::FrameInput& input,
                                           const DeviceRoots* deviceRoots) {
     const Float3 lowBefore = placed.min_ws, highBefore = placed.max_ws;
@@ -244,23 +264,8 @@ Status StrandEngine::Impl::recordStraight(gpu::CommandList& list, const runtime:
     const runtime::Vector<runtime::Capsule> capsulesBefore = frameSpheres.capsules;
     runtime::takeSpheres(wanted, shape->longestStrand, {spheresBefore, capsulesBefore, input.cut},
                          input.spheres, input.capsules, frameSpheres);
-    std::uint32_t substeps = runtime::substepsIn(wanted, input.dt);
-    bool bodyMoves = false;
     const bool skin = followsBody();
-    if (!skin && body) body->setPose({});
-    if (skin) {
-        // Hair is as fast as its roots were, and slows in a tenth of a second. How fast it is the device
-        // knows.
-        constexpr float kSlowing = 10.0f;  // 1/s
-        // What is cut keeps its speed from before.
-        const bool cut = input.cut || !(placed.motion < wanted.teleportDistance);
-        fastRoots =
-            std::max(cut ? 0.0f : placed.motion / input.dt, fastRoots * std::exp(-kSlowing * input.dt));
-        substeps = runtime::substepsBesideBody(fastRoots * input.dt, substeps);
-        bodyMoves = body->takeFrame(input, runtime::teleportDistanceOf(wanted, input), substeps);
-        wakeAll = wakeAll || bodyMoves;
-        if (body->hasPose() && skinSpheres.size() == frameSpheres.given) frameSpheres.ofSkin = skinSpheres;
-    }
+    std::uint32_t substeps = takeBody(input, runtime::substepsIn(wanted, input.dt));
     const Float3 low{std::min(placed.min_ws.x, lowBefore.x), std::min(placed.min_ws.y, lowBefore.y),
                      std::min(placed.min_ws.z, lowBefore.z)};
     const Float3 high{std::max(placed.max_ws.x, highBefore.x), std::max(placed.max_ws.y, highBefore.y),

@@ -31,6 +31,7 @@ struct StrandEngine::Impl {
     std::vector<StrandBatch> batches;
     std::optional<GpuHairVolume> volume;
     std::optional<DeviceBody> body;  ///< that the model meets
+    bool bodyMoves = false;          ///< in the frame
     runtime::Vector<std::uint8_t> skinSpheres;
     float fastRoots = 0.0f;    ///< m/s, of roots, and of what they set going not long ago
     std::size_t pressing = 0;  ///< of movingSpheres: those behind it stand for the body's skin
@@ -73,7 +74,6 @@ struct StrandEngine::Impl {
 
     // strand_engine.cpp
     std::string velocityError() const;
-    std::string bodyError(const runtime::SimulationSettings& settings) const;
     Status makeBody(const runtime::SimulationSettings& settings);
     Status makeBuffers();
     Status takeModel(const runtime::SimulationSettings& settings);
@@ -101,6 +101,7 @@ struct StrandEngine::Impl {
         return body && body->hasPose() && runtime::modelOf(settings.strandModel).meetsBody;
     }
     bool followsBody() const;
+    std::uint32_t takeBody(const runtime::FrameInput& input, std::uint32_t usual);
     std::span<const runtime::MovingSphere> pressingSpheres() const {
         return std::span(movingSpheres).first(pressing);
     }

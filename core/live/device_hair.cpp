@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/live/device_hair.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -93,7 +91,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
                                                      groom.simulation, options);
     if (!engine) return tl::unexpected(engine.error());
     if (auto given = engine->setPoses(poseViews(groom).views); !given) return tl::unexpected(given.error());
-    engine->setPoseAmounts(poseAmounts(groom));
+    if (auto set = engine->setPoseAmounts(poseAmounts(groom)); !set) return tl::unexpected(set.error());
     if (auto placed = engine->reset(input->rootsAt(start)); !placed) return tl::unexpected(placed.error());
     std::vector<Vec3f> roots;
     for (std::size_t s = 0; s < groom.strandCount(); ++s) roots.push_back(groom.strand(s).front());
@@ -111,8 +109,7 @@ Result<DeviceHair> DeviceHair::make(gpu::Device& device,
         // A wisp is as wide as twice its radius at rest at most, or at 7 m/s.
         hair.reach_ += 2 * *std::ranges::max_element(view.radii);
     }
-    const bool isVulkan = device.info().backend != gpu::Backend::Direct3D11;
-    if (scene.bodyPush() != nullptr && options.body != nullptr && isVulkan) {
+    if (scene.bodyPush() != nullptr && gpu_simulation::hasBodyKernels(device.info())) {
         auto made = gpu_simulation::GpuBodyPush::make(device, *scene.bodyPush());
         if (!made) return tl::unexpected(made.error());
         hair.push_.emplace(std::move(*made));
@@ -175,8 +172,7 @@ Status DeviceHair::setSettings(const runtime::SimulationSettings& settings) {
 }
 
 Status DeviceHair::setPoseAmounts(std::span<const float> amounts) {
-    if (engine_.setPoseAmounts(amounts)) return {};
-    return fail(fmt::format("there are {} amounts", amounts.size()), "expected one for each pose");
+    return engine_.setPoseAmounts(amounts);
 }
 
 /// From the head at rest to the world.

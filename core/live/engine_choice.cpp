@@ -97,10 +97,8 @@ Result<EngineTimes> measure(gpu::Device& device,
 /// Why the device cannot run these settings; empty where it can.
 std::string obstacle(gpu::Device* device, const Groom& groom) {
     if (device == nullptr || software::isSoftware(*device)) return "there is no GPU";
-    const bool meets = groom.body && groom.simulation.strandModel == runtime::StrandModel::rods;
-    if (meets && device->info().backend == gpu::Backend::Direct3D11)
-        return "Direct3D 11 does not keep hair out of the skin of a body, which the CPU does. Remove the "
-               "skin collider to use the GPU: spheres alone then hold the hair";
+    std::string why = gpu_simulation::bodyError(device->info(), groom.simulation, groom.body.get());
+    if (!why.empty()) return why;
     return gpu_simulation::kernelError(groom.simulation);
 }
 

@@ -25,10 +25,6 @@ void putPalette(const PosedBody& posed, Vector<shaders::float4>& rows) {
     for (const BonePose& pose : posed.palette()) putRows(pose, rows);
 }
 
-float leastOf(const BonePose& pose) {
-    return isFlatPose(pose) ? 0.0f : std::min({length(pose.x), length(pose.y), length(pose.z)});
-}
-
 void putBone(const BonePose& inverse, const BonePose& before, shaders::float4 facts,
              Vector<shaders::float4>& rows) {
     putRows(inverse, rows);
@@ -92,7 +88,7 @@ void putBodyPoses(const MovingBody& body, std::uint32_t substeps, shaders::BodyC
             const bool carries = i > 0 && carrier != carriers.end() && carrier->usable;
             if (i == 0) {
                 const BonePose start = body.starts()[b];
-                const float least = leastOf(start);
+                const float least = leastStretch(start);
                 putBone(least > 0.0f ? inverseOf(start) : BonePose{}, {}, {least, 0.0f, 0.0f, 0.0f}, rows);
                 continue;
             }

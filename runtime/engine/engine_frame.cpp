@@ -299,28 +299,14 @@ void Engine::Impl::takeBody(const FrameInput& input) {
     movingBody_.clear();
     bodyMoves_ = false;
     if (!meetsBody()) return;
-    const auto isFinitePose = [](const BonePose& bone) {
-        return isFinite(bone.x) && isFinite(bone.y) && isFinite(bone.z) && isFinite(bone.origin);
-    };
-    std::span<const BonePose> to = input.body_ws;
-    const bool fits = !to.empty() && (to.size() == 1 || to.size() == body_->bones.size()) &&
-                      std::all_of(to.begin(), to.end(), isFinitePose);
-    if (!fits) to = state_.body;
-    if (to.empty()) return;
-    std::span<const BonePose> from =
-        state_.body.size() == to.size() ? std::span<const BonePose>(state_.body) : to;
-    for (std::size_t b = 0; b < to.size(); ++b) {
-        // A cut carries it along.
-        if (length(to[b].origin - from[b].origin) > teleportDistance_) {
-            from = to;
-            bodyLost_ = true;
-        }
-        bodyMoves_ = bodyMoves_ || !(to[b] == from[b]);
-    }
-    movingBody_.take(*body_, bodyTable_, from, to, bodyCarriers_, substeps_);
+    const BodyWay way = bodyWay(*body_, input.body_ws, state_.body, teleportDistance_);
+    if (way.to.empty()) return;
+    bodyLost_ = bodyLost_ || way.isCut;
+    bodyMoves_ = way.moves;
+    movingBody_.take(*body_, bodyTable_, way.from, way.to, bodyCarriers_, substeps_);
     if (bodyLost_ || movingBody_.lostTrack()) std::fill(bodySeen_.begin(), bodySeen_.end(), kNeverSeen);
     bodyLost_ = false;
-    if (to.data() != state_.body.data()) state_.body.assign(to.begin(), to.end());
+    if (way.to.data() != state_.body.data()) state_.body.assign(way.to.begin(), way.to.end());
 }
 
 /// Whether a sphere that has changed since the last frame comes within reach of the block's strands.

@@ -69,11 +69,9 @@ void MovingBody::take(const BodyField& field, const BodyTable& table, std::span<
         if (i == 0) continue;
         wholes_[i - 1] = startsWhole && endsWhole ? 1 : 0;
         for (std::size_t b = 0; b < bones_; ++b) {
-            const BonePose& pose = between_[b];
-            const bool flat = isFlatPose(pose);
-            leasts_[(i - 1) * bones_ + b] =
-                flat ? 0.0f : std::min({length(pose.x), length(pose.y), length(pose.z)});
-            inverses_[(i - 1) * bones_ + b] = flat ? BonePose{} : inverseOf(pose);
+            const float least = leastStretch(between_[b]);
+            leasts_[(i - 1) * bones_ + b] = least;
+            inverses_[(i - 1) * bones_ + b] = least > 0.0f ? inverseOf(between_[b]) : BonePose{};
         }
         takeCarriers(i - 1, carriers, before_, between_);
         before_.swap(between_);
@@ -166,6 +164,30 @@ void MovingBody::sweep(std::uint32_t substep, const BodyVisit& visit, float near
         gone += room;
         if (gone >= whole) return;
     }
+}
+
+BodyWay bodyWay(const BodyField& field, std::span<const BonePose> given, std::span<const BonePose> known,
+                float teleportDistance) {
+    const auto isFinitePose = [](const BonePose& bone) {
+        return isFinite(bone.x) && isFinite(bone.y) && isFinite(bone.z) && isFinite(bone.origin);
+    };
+    const bool fits = !given.empty() && (given.size() == 1 || given.size() == field.bones.size()) &&
+                      std::all_of(given.begin(), given.end(), isFinitePose);
+    BodyWay way;
+    way.to = fits ? given : known;
+    way.from = known.size() == way.to.size() ? known : way.to;
+    for (std::size_t b = 0; b < way.to.size(); ++b) {
+        if (length(way.to[b].origin - way.from[b].origin) > teleportDistance) {
+            way.from = way.to;
+            way.isCut = true;
+        }
+        way.moves = way.moves || !(way.to[b] == way.from[b]);
+    }
+    return way;
+}
+
+float leastStretch(const BonePose& pose) {
+    return isFlatPose(pose) ? 0.0f : std::min({length(pose.x), length(pose.y), length(pose.z)});
 }
 
 std::uint32_t substepsBesideBody(float way, std::uint32_t usual) {

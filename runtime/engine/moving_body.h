@@ -106,6 +106,20 @@ class MovingBody {
     bool moves_ = false, lostTrack_ = true;
 };
 
+/// How a body goes on from `known`, its bones at the end of the last frame, to those that a frame gives.
+struct BodyWay {
+    std::span<const BonePose> from, to;  ///< as many; empty: it never had a pose
+    bool moves = false;
+    bool isCut = false;  ///< it is carried along: what was known of where it was is void
+};
+/// Bones that are not finite, or not as many as the field's or one, leave it where it is. What comes farther
+/// than `teleportDistance` (metres) is cut.
+BodyWay bodyWay(const BodyField& field, std::span<const BonePose> given, std::span<const BonePose> known,
+                float teleportDistance);
+
+/// Metres in the world of one that a bone carries, at least; 0: it is flat.
+float leastStretch(const BonePose& pose);
+
 /// More substeps than a frame usually has, where hair or roots beside a body go so far (metres in the frame)
 /// that a substep would take them through it: what one substep has to push out by a segment's length it turns
 /// by a right angle. At most kMostMoreSubsteps times as many.
