@@ -333,6 +333,7 @@ class CaseList {
         shade("shading: Kajiya-Kay", {});
         shade("shading: Marschner", marschner(render::Scattering::single));
         shade("shading: Marschner, dual scattering", marschner(render::Scattering::dual));
+        shade("shading: Marschner, light in a volume", marschner(render::Scattering::volume));
         shade("shading: Sadeghi", sadeghi);
         sadeghi.scattering = render::Scattering::dual;
         shade("shading: Sadeghi, dual scattering", sadeghi);

@@ -19,6 +19,9 @@ inline const std::map<std::string, gpu::Backend> kGpuBackends{{"vulkan", gpu::Ba
                                                               {"d3d11", gpu::Backend::Direct3D11}};
 
 /// The shading models as --shading names them.
+inline const std::map<std::string, render::Scattering> kScatterings{{"single", render::Scattering::single},
+                                                                    {"dual", render::Scattering::dual},
+                                                                    {"volume", render::Scattering::volume}};
 inline const std::map<std::string, render::ShadingModel> kShadingModels{
     {"kajiya", render::ShadingModel::kajiya},
     {"marschner", render::ShadingModel::marschner},

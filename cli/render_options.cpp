@@ -168,9 +168,11 @@ std::shared_ptr<RenderJobOptions> addRenderOptions(CLI::App& job) {
                    "With --show: inclination of the light against the plane across the fibre, in degrees")
         ->check(CLI::Range(-85.0, 85.0))
         ->needs(show);
-    job.add_option("--scatter", options->scatter,
-                   "Light scattered by other hairs: single ignores it, dual adds it. Not for kajiya")
-        ->check(CLI::IsMember({"single", "dual"}));
+    job.add_option(
+           "--scatter", options->scatter,
+           "Light scattered by other hairs: single ignores it, dual adds it as in an even layer, volume "
+           "follows it from hair to hair and skin. Not for kajiya")
+        ->check(CLI::IsMember(namesOf(kScatterings)));
     job.add_option("--shadow", options->shadow,
                    "Hair shadows: deep opacity maps, absorption by depth, opacity maps at fixed depths, "
                    "adaptive maps "

@@ -28,7 +28,7 @@ struct RenderJobOptions {
     std::string material;
     std::string look;  ///< empty: the view's, or the project's
     std::string shading;
-    std::string scatter = "dual";
+    std::string scatter = "volume";
     // Empty: the view's, or the project's.
     std::string shadow;
     std::uint32_t shadowLights = render::RenderOptions().shadowLights;

@@ -278,7 +278,7 @@ Result<Report> renderToFile(const RenderJobOptions& options) {
         view = std::move(*read);
     }
     if (!options.shading.empty()) view.fibre.model = kShadingModels.at(options.shading);
-    view.fibre.scattering = options.scatter == "dual" ? render::Scattering::dual : render::Scattering::single;
+    view.fibre.scattering = kScatterings.at(options.scatter);
     auto how = pictureOptions(options, view);
     if (!how) return tl::unexpected(how.error());
     const auto colours = colour::chooseColours(options.colours);

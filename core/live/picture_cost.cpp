@@ -25,7 +25,7 @@ constexpr std::size_t kUnderWay = 2;  ///< frames
 /// All that a picture is drawn from and that a setting may change.
 struct Settings {
     render::RenderOptions picture;
-    render::Scattering scattering = render::Scattering::dual;
+    render::Scattering scattering = render::Scattering::volume;
     std::uint32_t followPerGuide = 0;
 
     bool operator==(const Settings&) const = default;
@@ -83,6 +83,7 @@ class Candidates {
         if (scatters) {
             add("scattering", "single", [](Settings& s) { s.scattering = render::Scattering::single; });
             add("scattering", "dual", [](Settings& s) { s.scattering = render::Scattering::dual; });
+            add("scattering", "volume", [](Settings& s) { s.scattering = render::Scattering::volume; });
         }
         if (now.followPerGuide > 0) addFollowHairs();
     }
@@ -232,7 +233,7 @@ class Measuring {
         picture.shadowBlur = 0;
         picture.detail = 0;
         picture.surface = true;
-        exact.scattering = render::Scattering::dual;
+        exact.scattering = render::Scattering::volume;
         return exact;
     }
 

@@ -26,7 +26,7 @@ namespace hairloom {
 /// How a view sees light in fibres; what it does not say comes from the groom.
 struct FibreView {
     std::optional<render::ShadingModel> model;
-    render::Scattering scattering = render::Scattering::dual;  ///< the caller's, not the groom's
+    render::Scattering scattering = render::Scattering::volume;  ///< the caller's, not the groom's
     std::optional<double> ior;
     std::optional<Vec3d> absorption;  ///< RGB per fibre radius
     std::optional<shading::Melanin> melanin;

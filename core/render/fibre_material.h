@@ -10,7 +10,8 @@ enum class ShadingModel { kajiya, marschner, sadeghi };
 /// What becomes of light that a fibre has scattered towards others.
 enum class Scattering {
     single,  ///< nothing: it is lost
-    dual,    ///< it reaches them (Zinke et al. 2008)
+    dual,    ///< it reaches them, as in an even layer (Zinke et al. 2008)
+    volume,  ///< it is followed from fibre to fibre, around the head and out at the sides
 };
 
 /// How the models of light in fibres see the hair; Kajiya-Kay has no use for it.

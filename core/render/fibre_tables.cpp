@@ -127,7 +127,7 @@ class FibreTables::Baker {
 
   private:
     const FibreMaterial& material() const { return result_.material_; }
-    bool isDual() const { return result_.material_.scattering == Scattering::dual; }
+    bool isDual() const { return result_.material_.scattering != Scattering::single; }
     void add(std::uint32_t slot, const char* name, shading::Table table) {
         result_.waiting_.push_back({slot, name, std::move(table)});
     }
@@ -203,7 +203,7 @@ HairFlux FibreTables::flux(std::span<const Vec3d> absorptions) const {
 }
 
 const char* FibreTables::shader() const {
-    const bool dual = material_.scattering == Scattering::dual;
+    const bool dual = material_.scattering != Scattering::single;
     switch (material_.model) {
         case ShadingModel::kajiya:
             break;

@@ -37,6 +37,15 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowFragments < kMinShadowFragments || o.shadowFragments > kMaxShadowFragments)
         return fail(fmt::format("lists of {} pieces of hair for adaptive shadow maps", o.shadowFragments),
                     fmt::format("{} to {}", kMinShadowFragments, kMaxShadowFragments));
+    constexpr std::uint32_t kLeast = 1u << 12u;
+    constexpr std::uint32_t kMostCells = 1u << 22u;
+    constexpr std::uint32_t kMostPhotons = 1u << 24u;
+    if (o.lightCells < kLeast || o.lightCells > kMostCells)
+        return fail(fmt::format("{} cells for light between hairs", o.lightCells),
+                    fmt::format("{} to {}", kLeast, kMostCells));
+    if (o.lightPhotons < kLeast || o.lightPhotons > kMostPhotons)
+        return fail(fmt::format("{} photons for light between hairs", o.lightPhotons),
+                    fmt::format("{} to {}", kLeast, kMostPhotons));
     if (!(o.layerGrowth >= 1 && o.layerGrowth <= kMaxLayerGrowth))
         return fail(fmt::format("layers that grow by {}", o.layerGrowth),
                     fmt::format("1 to {}", kMaxLayerGrowth));

@@ -83,6 +83,11 @@ struct RenderOptions {
     std::uint32_t shadowLights = 8;
     std::uint32_t skyStrands =
         8192;  ///< most strands that maps of the sky count, as so many more; at least 64
+    /// Cells that Scattering::volume follows light in, at most, 2^12…2^22.
+    std::uint32_t lightCells = 1u << 18u;
+    /// Photons that it follows, 2^12…2^24: noise falls with the square root of their number. Half as many for
+    /// `temporal`.
+    std::uint32_t lightPhotons = 1u << 18u;
     /// Hair behind the head's first surface gets exp(−this · metres) of the light (thesis, 6.3), 1/m,
     /// 0…10,000; 0: a test of depth, all or nothing.
     float headAbsorption = 0;

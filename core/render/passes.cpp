@@ -214,6 +214,9 @@ Status preparePlaceholders(gpu::Device& device, RendererState& state) {
     if (auto status = prepareBuffer(device, "no words", sizeof(std::uint32_t), state.placeholderBuffer);
         !status)
         return status;
+    if (auto status = prepareBuffer(device, "no light grid", sizeof(shaders::float4), state.noColour);
+        !status)
+        return status;
     return prepareBuffer(device, "no sky", sizeof(shaders::SkyPoint), state.noSky);
 }
 
@@ -250,7 +253,9 @@ void bindShadows(gpu::CommandList& list, const RendererState& state) {
                 Binding::read(9, state.orPlaceholder(BufferId::firstHair)),
                 Binding::read(10, state.orPlaceholder(BufferId::opacity)),
                 Binding::read(18, state.orPlaceholder(TargetId::skyHead)),
-                Binding::read(19, state.orPlaceholder(BufferId::skyLayers))});
+                Binding::read(19, state.orPlaceholder(BufferId::skyLayers)),
+                Binding::read(20, state.targets[BufferId::lightGrid] ? state.targets[BufferId::lightGrid]
+                                                                     : state.noColour)});
     list.setConstants(3, gpu::bytesOf(state.sky));
 }
 

@@ -12,6 +12,7 @@
 #include "core/render/overlay.h"
 #include "core/render/pipelines.h"
 #include "core/render/targets.h"
+#include "shaders/shared/light_grid_types.h"
 
 namespace hairloom::render {
 
@@ -33,6 +34,16 @@ struct DisplayOnDevice {
 };
 
 /// All that the passes of a frame read.
+/// Cells that light between hairs is followed in, and what follows it.
+struct LightGridPlace {
+    Vec3f origin_ws = Vec3f::Zero();  ///< lower corner
+    float side = 0;                   ///< metres, of a cell; 0: there is no grid
+    std::array<std::uint32_t, 3> size{};
+    std::uint32_t photons = 0;
+    float power = 0;                         ///< irradiance times m², of each
+    std::array<std::uint32_t, 20> before{};  ///< photons before those of each light, then of the sky
+};
+
 struct RendererState {
     explicit RendererState(gpu::Device& device)
         : pipelines(device), onCpu(device.info().type == gpu::DeviceType::Cpu) {}
@@ -65,11 +76,13 @@ struct RendererState {
     gpu::TexturePtr placeholderTexture;  ///< one pixel, bound where a texture is not there
     gpu::BufferPtr placeholderBuffer;    ///< bound where a buffer of words is not there
     gpu::BufferPtr noSky;                ///< bound where no point has seen the sky
+    gpu::BufferPtr noColour;             ///< bound where there is no grid of light
     gpu::SamplerPtr linearFilter;        ///< once a filter was asked for
     std::vector<LightView> lightViews;
     std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
     shaders::ShadeConstants shade{};  ///< all but the material
     shaders::SkyConstants sky{};
+    LightGridPlace lightGrid;
 
     Box3f bounds() const;  ///< of all meshes and strands
     /// Where the light of a batch's curve points is, with shadows or without.

@@ -21,6 +21,7 @@ class Planner {
     RenderPlan plan() {
         planShadows();
         planSky();
+        planLightGrid();
         planPicture();
         planOutput();
         planOverlay();
@@ -144,6 +145,21 @@ class Planner {
                "three layers and the depth they are relative to");
     }
 
+    void planLightGrid() {
+        const bool light = facts_.shadowLights > 0 || facts_.environment;
+        const bool on = facts_.hair && facts_.volume && light && options_.shadows != Shadows::none;
+        pass(Pass::lightGrid, on,
+             on ? fmt::format("follows {} photons from hair to hair and skin", options_.lightPhotons)
+             : !facts_.hair                      ? "no hair"
+             : !facts_.volume                    ? "no material asks for light in a volume"
+             : options_.shadows == Shadows::none ? "shadows are turned off"
+                                                 : "no light casts shadows");
+        const std::uint64_t cells = options_.lightCells;
+        buffer(BufferId::lightCells, cells * HAIRLOOM_GRID_CELL_WORDS, 4, on, "hair and skin in cells");
+        buffer(BufferId::lightSums, cells * HAIRLOOM_GRID_LIGHT_WORDS, 4, on, "light through each cell");
+        buffer(BufferId::lightGrid, cells * HAIRLOOM_GRID_FLOATS, 16, on, "the same, for shading");
+    }
+
     void planPicture() {
         const bool blends = facts_.hair && options_.transparency == Transparency::weighted;
         pass(Pass::curves, facts_.hair,
@@ -261,10 +277,10 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves",     "head depth",    "first hair", "opacity layers", "sky head depth", "sky first hair",
-        "sky layers", "sky seen",      "shade",      "surface",        "nearest",        "draw",
-        "blend",      "composite",     "accumulate", "temporal",       "shadow blur",    "tone map",
-        "filter",     "overlay depth", "overlay",    "overlay on top"};
+        "curves",     "head depth", "first hair",    "opacity layers", "sky head depth", "sky first hair",
+        "sky layers", "sky seen",   "light grid",    "shade",          "surface",        "nearest",
+        "draw",       "blend",      "composite",     "accumulate",     "temporal",       "shadow blur",
+        "tone map",   "filter",     "overlay depth", "overlay",        "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 
@@ -292,6 +308,9 @@ const char* bufferName(BufferId buffer) {
                                                            "sky first hair",
                                                            "sky layer counts",
                                                            "sky layers",
+                                                           "light cells",
+                                                           "light sums",
+                                                           "light grid",
                                                            "nearest",
                                                            "light",
                                                            "nearest hairs",

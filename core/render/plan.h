@@ -26,6 +26,7 @@ enum class Pass {
     skyFirst,
     skyLayers,
     skySeen,  ///< from each curve point
+    lightGrid,  ///< light between hairs, where it falls
     shade,
     surface,  ///< of what is nearest in each pixel: depth, strand, velocity, albedo
     nearest,  ///< where kernels rasterise: what is in front, before its light is drawn
@@ -71,6 +72,9 @@ enum class BufferId {
     skyFirst,        ///< the same three for light from around
     skyCounts,
     skyLayers,
+    lightCells,      ///< HAIRLOOM_GRID_CELL_WORDS of what each cell of the light's grid holds
+    lightSums,       ///< HAIRLOOM_GRID_LIGHT_WORDS of light that goes through each
+    lightGrid,       ///< HAIRLOOM_GRID_FLOATS each, of the same for shading
     nearest,         ///< depths of all samples as bits
     light,           ///< of all samples
     fragmentDepths,  ///< of each pixel's nearest fragments of hair as bits, in their order
@@ -100,6 +104,7 @@ struct SceneFacts {
     bool environment = false;        ///< light from around
     bool overlay = false;            ///< marks that meshes hide
     bool overlayOnTop = false;
+    bool volume = false;            ///< light between hairs is followed
     bool look = false;              ///< some hair does not look the same everywhere
     std::uint32_t askedLayers = 0;  ///< of opacity, where the options have fewer; else no matter
     std::uint32_t fragments = 0;    ///< that lists of adaptive maps hold: fragmentsThatFit()

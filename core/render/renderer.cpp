@@ -8,6 +8,7 @@
 
 #include "core/base/profiler.h"
 #include "core/render/display_table.h"
+#include "core/render/light_grid.h"
 #include "core/render/opacity_layers.h"
 #include "core/render/passes.h"
 #include "core/render/shadow_maps.h"
@@ -20,18 +21,21 @@ struct Changes {
     bool curves = true;
     bool sky = true;  ///< what of it is seen; shadows then change as well
     bool shadows = true;
+    bool grid = true;  ///< light between hairs
     bool shading = true;
     bool picture = true;
 
     static Changes geometry() { return {}; }
-    static Changes head() { return {false, true, true, true, true}; }
-    static Changes lights() { return {false, false, true, true, true}; }
-    static Changes looks() { return {false, false, false, true, true}; }
-    static Changes placeholderTexture() { return {false, false, false, false, false}; }
+    static Changes head() { return {false, true, true, true, true, true}; }
+    static Changes lights() { return {false, false, true, true, true, true}; }
+    static Changes looks() { return {false, false, false, true, true, true}; }
+    static Changes camera() { return {false, false, false, false, true, true}; }
+    static Changes placeholderTexture() { return {false, false, false, false, false, false}; }
     void add(const Changes& other) {
         curves |= other.curves;
         sky |= other.sky;
         shadows |= other.shadows;
+        grid |= other.grid;
         shading |= other.shading;
         picture |= other.picture;
     }
@@ -46,6 +50,8 @@ Changes compare(const RenderOptions& before, const RenderOptions& now) {
         changes.add(Changes::lights());
     }
     if (now.skyStrands != before.skyStrands) changes.add(Changes::head());
+    changes.grid |= now.lightCells != before.lightCells || now.lightPhotons != before.lightPhotons ||
+                    now.temporal != before.temporal;
     if ((now.shadowBlur > 0) != (before.shadowBlur > 0) || now.headAbsorption != before.headAbsorption ||
         now.shadowFilter != before.shadowFilter) {
         changes.add(Changes::looks());
@@ -200,7 +206,7 @@ Status Renderer::setCamera(const Camera& camera, bool cut) {
     if (auto status = check(camera); !status) return status;
     parts_->state.camera = camera;
     if (cut) parts_->state.pastCamera.reset();
-    parts_->changes.add(Changes::looks());
+    parts_->changes.add(Changes::camera());
     return {};
 }
 
@@ -261,6 +267,9 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     for (const StrandGroup& group : state.scene.groups) {
         for (const MaterialOnDevice& material : group.materials) {
             facts.look = facts.look || material.shading.look.has_value();
+            const FibreMaterial& fibre = material.shading.fibre;
+            facts.volume = facts.volume || (fibre.model != ShadingModel::kajiya && !material.shading.tubes &&
+                                            fibre.scattering == Scattering::volume);
             facts.tableBytes += material.fibre.bytes();
         }
     }
@@ -287,6 +296,7 @@ Status Renderer::Parts::prepareTargets(bool presents) {
         changes.add(Changes::head());
         mapped.clear();
     }
+    if (isNew->has(BufferId::lightGrid)) changes.add(Changes::looks());
     changes.picture |= isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) ||
                        isNew->has(BufferId::sum) || isNew->has(BufferId::surface);
     if (isNew->has(BufferId::history)) state.temporal = {};
@@ -352,12 +362,16 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
         state.mapDetail = state.detail;
         fitViews(state, sky);
     }
+    const bool grid = changes.grid && !holds;
+    if (grid) placeLightGrid(state);
+    if (grid && state.plan.runs(Pass::lightGrid)) changes.shading = changes.picture = true;
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (shadows) recordMaps(list, state, lightAtlas(state));
     if (sky) recordMaps(list, state, skyAtlas(state));
     if (changes.sky && state.plan.runs(Pass::skySeen)) recordSkySeen(list, state);
     if (shadows) mapped = castingLights();
+    if (grid && state.plan.runs(Pass::lightGrid)) recordLightGrid(list, state);
     if (changes.shading && state.plan.runs(Pass::shade)) {
         recordShading(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
@@ -365,6 +379,7 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     if ((changes.picture || state.options.temporal) && state.plan.runs(Pass::surface))
         recordSurface(list, state);
     if (changes.picture) accumulated = 0;
+    heldBack.grid |= holds && changes.grid;
     if (holds && changes.shadows) heldBack.add(changes.sky ? Changes::head() : Changes::lights());
     changes = Changes::placeholderTexture();
 }

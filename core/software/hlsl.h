@@ -153,6 +153,9 @@ inline bool any(bool3 v) {
 inline bool all(bool2 v) {
     return v.x && v.y;
 }
+inline bool all(bool3 v) {
+    return v.x && v.y && v.z;
+}
 
 // As shaders have them: what is not a number becomes the other one.
 inline float min(float a, float b) {
@@ -287,6 +290,9 @@ inline float4 clamp(float4 v, float4 low, float4 high) {
     return min(max(v, low), high);
 }
 inline int2 clamp(int2 v, int2 low, int2 high) {
+    return min(max(v, low), high);
+}
+inline int3 clamp(int3 v, int3 low, int3 high) {
     return min(max(v, low), high);
 }
 inline float2 lerp(float2 a, float2 b, float2 t) {

@@ -92,9 +92,9 @@ class PictureForm : public OptionForm {
 
     void addScattering() {
         addEnum("scattering", "Scattered light",
-                "Light scattered by other hairs: ignored (single) or added by dual scattering (dual). For "
-                "Marschner and Sadeghi",
-                {QString("Single"), QString("Dual")}, &PictureQuality::scattering);
+                "Light scattered by other hairs: ignored (single), added as in an even layer (dual), or "
+                "followed from hair to hair and skin (volume). For Marschner and Sadeghi",
+                {QString("Single"), QString("Dual"), QString("Volume")}, &PictureQuality::scattering);
     }
 
     Viewport& viewport_;

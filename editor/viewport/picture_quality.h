@@ -17,8 +17,8 @@ struct PictureQuality {
     render::Transparency transparency = render::Transparency::automatic;
     /// Strips where the device cannot tessellate.
     render::Ribbons ribbons = render::Ribbons::automatic;
-    std::uint32_t subdivisions = 2;                            ///< curve segments per segment of a strand
-    render::Scattering scattering = render::Scattering::dual;  ///< not of Kajiya-Kay
+    std::uint32_t subdivisions = 2;  ///< curve segments per segment of a strand
+    render::Scattering scattering = render::Scattering::volume;  ///< not of Kajiya-Kay
 
     bool operator==(const PictureQuality&) const = default;
 };

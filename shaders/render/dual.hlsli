@@ -55,3 +55,15 @@ float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, floa
     const float3 n = m.share * profileAt(float2(0.5 + 0.5 * f.cosPhi, c.thetaD), absorption);
     return (onwardM * m.onward * n + diffuseM * m.diffuse) * (c.cosIn / c.dSquared);
 }
+
+// Light that still goes the lamp's way, of which fibres before have let `passed` by without meeting it.
+float3 onwardScattering(FibreConstants fibre, FibreFrame f, float passed, float3 tint, float3 absorption) {
+    const float before = -log(clamp(passed, 1e-9, 1.0));
+    const FibreCosines c = fibreCosines(f);
+    const FibreAverages a = averagesAt(c.thetaD, absorption);
+    const float3 share = shareOf(a.moments, tint);
+    const float3 onward = max(exp(-stoppedBy(tinted(a.moments, share)).share * before) - exp(-before), 0.0);
+    const float met = scatteringsOf(before * dot(a.forward.rgb * share, 1.0 / 3.0));
+    const float m = spreadLongitudinal(fibre, f, a.rest.z + met * a.rest.x, a.rest.w + met * a.forward.w);
+    return m * onward * share * profileAt(float2(0.5 + 0.5 * f.cosPhi, c.thetaD), absorption) * (c.cosIn / c.dSquared);
+}

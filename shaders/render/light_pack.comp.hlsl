@@ -22,7 +22,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     }
     for (uint word = 0u; word < gPack.words; word += 2u) {
         float4 share = float4(0, 0, 0, 0);
-        for (uint i = 0u; i < 4u; ++i) {
+        [unroll] for (uint i = 0u; i < 4u; ++i) {
             const uint layer = 2u * word + i;
             if (layer < gPack.layers) share[i] = float(gCounts[texel * gPack.layers + layer]) * (OPACITY_UNIT / FIBRE_COUNT);
         }

@@ -19,7 +19,7 @@ float layerEnd(uint i, uint count, float growth) {
                : place <= 2.0 / 3.0 ? 0.04 + 0.3 * (place - 1.0 / 3.0)
                                     : 0.14 + 2.58 * (place - 2.0 / 3.0);
     if (abs(growth - 1.0) < 1e-3) return place;
-    return (pow(growth, number) - 1.0) / (pow(growth, all) - 1.0);
+    return (pow(abs(growth), number) - 1.0) / (pow(abs(growth), all) - 1.0);
 }
 
 // The layer at a part of that depth; those behind the last belong to it.
@@ -29,7 +29,7 @@ uint layerAt(float part, uint count, float growth) {
     if (growth == 0.0)
         place = part < 0.04 ? part / 0.12 : part < 0.14 ? 1.0 / 3.0 + (part - 0.04) / 0.3 : 2.0 / 3.0 + (part - 0.14) / 2.58;
     else if (abs(growth - 1.0) >= 1e-3)
-        place = log(1.0 + max(part, 0.0) * (pow(growth, all) - 1.0)) / (log(growth) * all);
+        place = log(1.0 + max(part, 0.0) * (pow(abs(growth), all) - 1.0)) / (log(growth) * all);
     return uint(clamp(place * all, 0.0, all - 1.0));
 }
 

@@ -12,6 +12,7 @@
 #endif
 #ifdef HAIRLOOM_DUAL
 #include "shaders/render/dual.hlsli"
+#include "shaders/render/light_grid.hlsli"
 #endif
 #ifdef HAIRLOOM_LOOK
 #include "shaders/render/point_dye.hlsli"
@@ -55,19 +56,26 @@ void main(uint3 id : SV_DispatchThreadID) {
         float3 scattered = shadow.passed *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
-        scattered += multipleScattering(gFibre, f, gShade.clumping * shadow.fibres, gShade.clumping * o.allFibres, tint,
-                                        absorption, gShade.ground.rgb * o.ground);
+        if (gridTells(gShade)) scattered += onwardScattering(gFibre, f, shadow.passed, tint, absorption);
+        else scattered += multipleScattering(gFibre, f, gShade.clumping * shadow.fibres, gShade.clumping * o.allFibres,
+                                             tint, absorption, gShade.ground.rgb * o.ground);
 #endif
         colour += irradianceOf(light, p.position_ws.xyz) * shadow.visibility * scattered;
     }
+#ifdef HAIRLOOM_DUAL
+    const FibreAverages across = averagesAt(0.0, absorption);
+    if (gridTells(gShade)) colour += gridScattering(gridLightAt(gShade, p.position_ws.xyz), across, tint, tangent, toView);
+#endif
     if (hasEnvironment(gShade)) {
         const SkyMoments fibre = skyMoments(dot(toView, tangent), absorption);
         SkyInHair sky = openSky();
         if (mapsTellTheSky(gShade)) {
             const SkySeen seen = seenAt(gSeen, strand, p.strand, index, gShade.subdivisions);
 #ifdef HAIRLOOM_DUAL
-            const FibreAverages across = averagesAt(0.0, absorption);
-            sky = skyInHair(seen, tinted(across.moments, shareOf(across.moments, tint)), gShade.ground.rgb);
+            FibreMoments moments = tinted(across.moments, shareOf(across.moments, tint));
+            // The grid has the rest.
+            if (gridTells(gShade)) moments.albedo = moments.first = moments.second = max(moments.second, 0.0);
+            sky = skyInHair(seen, moments, gridTells(gShade) ? 0.0 : gShade.ground.rgb);
 #else
             FibreMoments nothing;  // what has met a fibre or the head is lost
             nothing.albedo = nothing.first = nothing.second = 0;

@@ -135,7 +135,7 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     // A B-spline over 3 x 3 texels of finished comparisons, or as many as are wanted, from `base` on: its mean is half a texel
     // further than the middle of base + f, and so are the middles of texels.
     const int texels = int(light.filterTexels);
-    const int reach = texels / 2;
+    const int reach = int(uint(texels) / 2u);
     // Hairs that stand for several are wider than texels. Texels as far from each other as such hairs are wide are averaged, and
     // then let light through by the mean of their fibres: what all hairs would do, which hardly differ from texel to texel.
     const bool spread = light.tapDistance > 1.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Skin: diffuse light that wraps a little around the terminator, a soft highlight, shadows of head and hair.
 #include "runtime/shaders/layer_light.hlsli"
+#include "shaders/render/light_grid.hlsli"
 #include "shaders/render/shadows.hlsli"
 #include "shaders/render/sky_maps.hlsli"
 
@@ -18,6 +19,7 @@ FibreMoments hairOverSkin(ShadeConstants shade) {
 float3 throughHair(ShadeConstants shade, Occlusion hair, float3 albedo) {
     const float counted = shade.clumping * hair.fibres;
     if (shade.ofFibres == 0) return exp(-shade.scattered.rgb * counted);
+    if (gridTells(shade)) return exp(stoppedBy(hairOverSkin(shade)).share * log(clamp(hair.passed, 1e-9, 1.0)));
     const LayerLight below = lightInLayer(hairOverSkin(shade), counted, counted, albedo);
     const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
     return max(all - exp(-counted), 0.0) + hair.passed;
@@ -49,6 +51,7 @@ float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3
         caught += nl * ray.open * (1.0 - through);
         weight += nl;
     }
+    if (gridTells(shade)) return plain * (passed / max(all, 1e-6));
     caught /= max(weight, 1e-6);
     return plain * (passed / max(all, 1e-6)) / (1.0 - 0.5 * caught * sentOn * (1.0 + albedo));
 }
@@ -82,5 +85,6 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
                   (lit * throughHair(shade, shadow, albedo));
     }
     if (hasEnvironment(shade)) colour += albedo * skyOnSkin(shade, position_ws, normal, albedo);
+    if (gridTells(shade)) colour += albedo / kPi * gridLightOnSkin(shade, position_ws);
     return colour;
 }

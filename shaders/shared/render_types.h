@@ -182,6 +182,9 @@ struct ShadeConstants {
     uint subdivisions;  // curve segments per given segment
     float ownWidth;     // of a hair by that of its ribbon, which may stand for several
     float unused0, unused1, unused2;
+    // Of the grid that light between hairs was followed in: lower corner, and w: cells a metre.
+    float4 gridOrigin_ws;
+    uint4 gridSize;  // cells along x, y and z; w: 1 where there is one
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
 };
 
@@ -421,8 +424,9 @@ HAIRLOOM_OFFSET(ShadeConstants, primaryExponent, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
 HAIRLOOM_OFFSET(ShadeConstants, clumping, 320);
 HAIRLOOM_OFFSET(ShadeConstants, count, 352);
-HAIRLOOM_OFFSET(ShadeConstants, lights, 384);
-static_assert(sizeof(ShadeConstants) == 384 + 192 * HAIRLOOM_MAX_LIGHTS);
+HAIRLOOM_OFFSET(ShadeConstants, gridOrigin_ws, 384);
+HAIRLOOM_OFFSET(ShadeConstants, lights, 416);
+static_assert(sizeof(ShadeConstants) == 416 + 192 * HAIRLOOM_MAX_LIGHTS);
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
 static_assert(sizeof(LookConstants) == 160);
 static_assert(sizeof(MeshConstants) == 80);

@@ -79,6 +79,7 @@ std::vector<Case> cases() {
         list.push_back(varied("shoulder-" + name, change));
     };
     add("single", [](Case& c) { c.scattering = render::Scattering::single; });
+    add("volume", [](Case& c) { c.scattering = render::Scattering::volume; });
     add("no-shadows", [](Case& c) { c.options.shadows = Shadows::none; });
     add("absorption", [](Case& c) { c.options.shadows = Shadows::absorption; });
     add("opacity-maps", [](Case& c) { c.options.shadows = Shadows::opacityMaps; });

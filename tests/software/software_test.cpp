@@ -59,8 +59,11 @@ TEST_F(SoftwareTest, PicturesAreThoseOfAGraphicsApi) {
     RenderOptions how = options(96);
     how.shadowResolution = 128;
     how.skyStrands = 64;
-    for (const ShadingModel model : {ShadingModel::kajiya, ShadingModel::marschner}) {
-        const RenderScene scene = withModel(head, model);
+    for (const auto& [model, scattering] : {std::pair{ShadingModel::kajiya, Scattering::dual},
+                                            std::pair{ShadingModel::marschner, Scattering::dual},
+                                            std::pair{ShadingModel::marschner, Scattering::volume}}) {
+        RenderScene scene = withModel(head, model);
+        scene.strands[0].material.fibre.scattering = scattering;
         const auto theirs = renderPicture(**api, scene, how);
         ASSERT_TRUE(theirs) << theirs.error().message();
         const Picture ours = draw(scene, how);

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far two linear pictures are apart, and sheets that show them side by side."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -34,11 +35,32 @@ def _blurred(image: np.ndarray, radius: int) -> np.ndarray:
     return image
 
 
-def blurred_relative_mse(image: np.ndarray, truth: np.ndarray, coverage: np.ndarray, radius: int = 4) -> float:
-    """Mean of (a − b)² / (b² + ε) of the blurred pictures where hair covers: path-traced noise is gone, lobes stay."""
-    a, b = _blurred(image, radius), _blurred(truth, radius)
-    relative = (a - b) ** 2 / (b**2 + 1e-3)
-    return float(relative[coverage > 0.5].mean())
+@dataclass
+class Closeness:
+    """Of a picture of ours, where hair covers, luminance blurred by 4 pixels; light as ours by the truth's."""
+
+    relative_mse: float  # squares of differences by those of the truth, none darker than 1 % of the bright parts
+    mean: float
+    dim: float  # where the truth has 5 to 25 % of its brightest percentile
+    bright: float  # and more than half of that
+    correlation: float
+
+
+def closeness(image: np.ndarray, truth: np.ndarray, coverage: np.ndarray) -> Closeness:
+    a, b = _blurred(luminance(image), 4), _blurred(luminance(truth), 4)
+    hair = coverage > 0.5
+    top = np.percentile(b[hair], 99)
+
+    def light(where: np.ndarray) -> float:
+        return float(a[where].sum() / b[where].sum()) if where.any() else float("nan")
+
+    return Closeness(
+        float(((a - b) ** 2 / (b**2 + (0.01 * top) ** 2))[hair].mean()),
+        light(hair),
+        light(hair & (b > 0.05 * top) & (b < 0.25 * top)),
+        light(hair & (b > 0.5 * top)),
+        float(np.corrcoef(a[hair], b[hair])[0, 1]),
+    )
 
 
 def to_display(image: np.ndarray, exposure: float) -> np.ndarray:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+import block
 import judge
 import path_trace
 from hair_file import Strands, read_hair
@@ -22,17 +23,20 @@ LIGHTS = ("key", "back", "side", "box")
 ALL_ORDERS = 100
 
 
+# How ours follows light that other hairs have scattered.
+WAYS = ("dual", "volume")
+
+
 @dataclass
 class Verdict:
     light: str
     colour: str
     head: str
-    truth_ratio: float
-    our_ratio: float
-    single_over_truth: float
-    all_over_truth: float
-    blurred_relative_mse: float
-    flip: float
+    truth_ratio: float  # of all scattering by single, path-traced
+    single: judge.Closeness
+    dual: judge.Closeness
+    volume: judge.Closeness
+    flip: float  # of the volume
 
 
 def view_of(strands: Strands, size: int) -> dict:
@@ -104,22 +108,21 @@ PLAIN = [
 
 
 class Ours:
-    def __init__(self, cli: Path, groom: Path, folder: Path, mi):
-        self.cli, self.groom, self.folder, self.mi = cli, groom, folder, mi
+    def __init__(self, cli: Path, folder: Path, mi):
+        self.cli, self.folder, self.mi = cli, folder, mi
 
-    def render(self, view: dict, name: str, scatter: str) -> np.ndarray:
+    def render(self, groom: Path, view: dict, name: str, scatter: str) -> np.ndarray:
         view_file = self.folder / f"{name}.view.json"
         view_file.write_text(json.dumps(view, indent=1))
         exr = self.folder / f"{name}.{scatter}.exr"
-        command = [self.cli, "render", self.groom, "--view", view_file, "--shading", "marschner"]
+        command = [self.cli, "render", groom, "--view", view_file, "--shading", "marschner"]
         command += ["--scatter", scatter, "--shadow", "dom", "--exr", exr]
-        command += ["-o", self.folder / f"{name}.{scatter}.png"]
+        command += ["-o", self.folder / f"{name}.{scatter}.png", "--force"]
         subprocess.run([str(c) for c in command], check=True, stdout=subprocess.DEVNULL)
         return np.array(self.mi.Bitmap(str(exr)))[..., :3].astype(np.float64)
 
 
-def compare(args: argparse.Namespace) -> list[Verdict]:
-    mi = path_trace.start()
+def compare(args: argparse.Namespace, mi) -> list[Verdict]:
     args.out.mkdir(parents=True, exist_ok=True)
     hair_file = args.out / "strands.hair"
     subprocess.run(
@@ -138,36 +141,30 @@ def compare(args: argparse.Namespace) -> list[Verdict]:
     lights = {"view": view["lights"]} if args.view else {name: [light_of(name, view)] for name in args.lights}
     hair = view["hair"]
     curves = path_trace.write_curves(strands, hair["radius_m"], hair["tip_scale"], args.out / "curves")
-    ours = Ours(args.cli, plain, args.out, mi)
+    ours = Ours(args.cli, args.out, mi)
     verdicts = []
     for light, head in ((light, head) for light in lights for head in HEADS):
         view["lights"], view["head_albedo"] = lights[light], HEADS[head]
-        rows: list[list[np.ndarray]] = [[], [], [], []]
+        rows: list[list[np.ndarray]] = [[], [], [], [], []]
         for colour, eumelanin in COLOURS.items():
             hair["sigma_a_per_radius"] = (eumelanin * ABSORPTION).tolist()
             scene = path_trace.TruthScene(mi, view, eumelanin, args.head, curves)
-            truth = {depth: scene.render(depth, args.samples) for depth in (2, ALL_ORDERS)}
+            single, whole = (scene.render(depth, args.samples) for depth in (2, ALL_ORDERS))
             covered = scene.coverage()
             name = f"{light}_{head}_{colour}"
-            single, dual = (ours.render(view, name, scatter) for scatter in ("single", "dual"))
-            mean = {
-                key: judge.mean_where(image, covered)
-                for key, image in (("s", truth[2]), ("a", truth[ALL_ORDERS]), ("os", single), ("od", dual))
-            }
+            our_single, *ours_of = (ours.render(plain, view, name, scatter) for scatter in ("single", *WAYS))
             verdicts.append(
                 Verdict(
                     light,
                     colour,
                     head,
-                    mean["a"] / mean["s"],
-                    mean["od"] / mean["os"],
-                    mean["os"] / mean["s"],
-                    mean["od"] / mean["a"],
-                    judge.blurred_relative_mse(dual, truth[ALL_ORDERS], covered),
-                    judge.flip(dual, truth[ALL_ORDERS], args.exposure),
+                    judge.mean_where(whole, covered) / judge.mean_where(single, covered),
+                    judge.closeness(our_single, single, covered),
+                    *(judge.closeness(image, whole, covered) for image in ours_of),
+                    judge.flip(ours_of[-1], whole, args.exposure),
                 )
             )
-            for row, image in zip(rows, (truth[2], single, truth[ALL_ORDERS], dual)):
+            for row, image in zip(rows, (single, our_single, whole, *ours_of)):
                 row.append(image)
             print(table(verdicts[-1:]).splitlines()[-1], flush=True)
         judge.save_sheet(mi, rows, args.exposure, args.out / f"sheet_{light}_{head}.png")
@@ -175,15 +172,19 @@ def compare(args: argparse.Namespace) -> list[Verdict]:
 
 
 def table(verdicts: list[Verdict]) -> str:
+    """Each of ours as light in all hair, in dim and in bright parts by the truth's, and relative MSE."""
     lines = [
-        "| light | hair | head | all / single, path-traced | ours | single, ours / truth | all, ours / truth | "
-        "blurred relMSE | FLIP |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| light | hair, head | all / single | single | dual | volume | FLIP |",
+        "|---|---|---|---|---|---|---|",
     ]
+
+    def shown(c: judge.Closeness) -> str:
+        return f"{c.mean:.2f}, {c.dim:.2f}, {c.bright:.2f}, {c.relative_mse:.2f}"
+
     for v in verdicts:
         lines.append(
-            f"| {v.light} | {v.colour} | {v.head} | {v.truth_ratio:.3f} | {v.our_ratio:.3f} | {v.single_over_truth:.2f} | "
-            f"{v.all_over_truth:.2f} | {v.blurred_relative_mse:.4f} | {v.flip:.3f} |"
+            f"| {v.light} | {v.colour}, {v.head} | {v.truth_ratio:.2f} | {shown(v.single)} | {shown(v.dual)} | "
+            f"{shown(v.volume)} | {v.flip:.3f} |"
         )
     return "\n".join(lines) + "\n"
 
@@ -197,13 +198,21 @@ def main() -> None:
     parser.add_argument("--lights", nargs="+", choices=LIGHTS, default=LIGHTS, help="from where light comes")
     parser.add_argument("--size", type=int, default=256, help="pixels along one side")
     parser.add_argument("--samples", type=int, default=128, help="paths a pixel, a multiple of 16")
+    parser.add_argument("--seeds", type=int, default=4, help="blocks of fibres whose mean counts")
     parser.add_argument("--exposure", type=float, default=6.0, help="factor on the light that is shown and that FLIP sees")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder of results")
     args = parser.parse_args()
-    verdicts = compare(args)
+    mi = path_trace.start()
+    verdicts = compare(args, mi)
     (args.out / "truth.json").write_text(json.dumps([asdict(v) for v in verdicts], indent=1) + "\n")
     (args.out / "truth.md").write_text(table(verdicts))
     print(table(verdicts), end="")
+    hair = view_of(block.fibres(0), block.SIZE)["hair"]
+    hair["sigma_a_per_radius"] = (COLOURS["blond"] * ABSORPTION).tolist()
+    ours = Ours(args.cli, args.out, mi)
+    bands = block.compare(mi, ours.render, args.cli, PLAIN, hair, COLOURS["blond"], args.seeds, args.samples, args.out)
+    (args.out / "block.md").write_text(block.table(bands))
+    print(block.table(bands), end="")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds hair to the cells of the grid that light is followed in: a thread for each curve point, which adds the segment behind it.
+#include "shaders/render/curve.hlsli"
+#include "shaders/render/dual.hlsli"
+#include "shaders/shared/light_grid_types.h"
+#ifdef HAIRLOOM_LOOK
+#include "shaders/render/point_dye.hlsli"
+#endif
+
+cbuffer Constants : register(b0) { ShadeConstants gShade; };
+cbuffer Fibre : register(b1) { FibreConstants gFibre; };
+cbuffer Grid : register(b4) { LightGridConstants gGrid; };
+StructuredBuffer<CurvePoint> gCurve : register(t0);
+StructuredBuffer<StrandHeader> gStrands : register(t1);
+RWStructuredBuffer<uint> gCells : register(u0);
+
+static const uint kMostPieces = 4096u;
+
+void addAt(uint word, float amount) { InterlockedAdd(gCells[word], uint(int(round(amount)))); }
+void addColour(uint word, float3 amount) {
+    addAt(word, amount.x);
+    addAt(word + 1u, amount.y);
+    addAt(word + 2u, amount.z);
+}
+
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {
+    const uint index = id.x + id.y * gShade.rowThreads;
+    if (id.x >= gShade.rowThreads || index + 1u >= gShade.count) return;
+    const CurvePoint p = gCurve[index];
+    const CurvePoint q = gCurve[index + 1u];
+    if (p.strand != q.strand) return;
+    const StrandHeader strand = gStrands[p.strand];
+    const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
+#ifdef HAIRLOOM_LOOK
+    const float3 absorption = lookAt(placeOf(strand, p.along));
+    const float3 white = exp(sqrt(absorption) / gLook.ownScale);
+    const float3 tint = gShade.bounded != 0 ? min(vary, min(white.x, min(white.y, white.z))) : vary;
+#else
+    const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
+    const float3 tint =
+        min(own * (lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary), gShade.brightestTint);
+    const float3 absorption = 0;
+#endif
+    const FibreAverages averages = averagesAt(0.0, absorption);
+    const FibreMoments moments = tinted(averages.moments, shareOf(averages.moments, tint));
+    const float3 way = q.position_ws.xyz - p.position_ws.xyz;
+    const float metres = length(way);
+    if (!(metres > 0.0)) return;
+    const float3 tangent = way / metres;
+    const float spread = gGrid.spread * gGrid.origin_ws.w;
+    const uint pieces = min(uint((spread > 0.0 ? 6.0 : 2.0) * metres / gGrid.origin_ws.w) + 1u, kMostPieces);
+    const float each = metres * (p.position_ws.w + q.position_ws.w) * 0.5 * (p.opacity + q.opacity) * gGrid.hairUnit / float(pieces);
+    const int3 size = int3(int(gGrid.sizeX), int(gGrid.sizeY), int(gGrid.sizeZ));
+    for (uint i = 0u; i < pieces; ++i) {
+        const uint chance = hashUint(index * kMostPieces + i);
+        float3 at_ws = p.position_ws.xyz + way * ((float(i) + hashUnit(chance)) / float(pieces));
+        if (spread > 0.0) {
+            const float3 a = float3(hashUnit(chance + 1u), hashUnit(chance + 2u), hashUnit(chance + 3u));
+            const float3 b = float3(hashUnit(chance + 4u), hashUnit(chance + 5u), hashUnit(chance + 6u));
+            at_ws += spread * (a + b - 1.0);
+        }
+        const int3 cell = int3(floor((at_ws - gGrid.origin_ws.xyz) / gGrid.origin_ws.w));
+        if (any(cell < int3(0, 0, 0)) || any(cell >= size)) continue;
+        const uint first = HAIRLOOM_GRID_CELL_WORDS *
+                           (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
+        addAt(first, each);
+        addColour(first + HAIRLOOM_GRID_TANGENT, each * tangent);
+        addColour(first + HAIRLOOM_GRID_ALBEDO, each * moments.albedo);
+        addColour(first + HAIRLOOM_GRID_FIRST, each * moments.first);
+        addColour(first + HAIRLOOM_GRID_SECOND, each * moments.second);
+        addAt(first + HAIRLOOM_GRID_TILT, each * averages.rest.z);
+        addAt(first + HAIRLOOM_GRID_VARIANCE, each * averages.rest.w);
+    }
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds skin to the cells of the grid that light is followed in: a thread for each triangle.
+#include "shaders/shared/light_grid_types.h"
+
+cbuffer Grid : register(b4) { LightGridConstants gGrid; };
+StructuredBuffer<float> gPositions : register(t0);  // three a vertex
+StructuredBuffer<float> gNormals : register(t1);
+StructuredBuffer<uint> gIndices : register(t2);
+RWStructuredBuffer<uint> gCells : register(u0);
+
+static const uint kMostRows = 96u;
+
+float3 vertexAt(StructuredBuffer<float> values, uint vertex) {
+    return float3(values[3u * vertex], values[3u * vertex + 1u], values[3u * vertex + 2u]);
+}
+float3 inCells(float3 position_ws) { return (position_ws - gGrid.origin_ws.xyz) / gGrid.origin_ws.w; }
+void addAt(uint word, float amount) { InterlockedAdd(gCells[word], uint(int(round(amount)))); }
+
+[numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
+void main(uint3 id : SV_DispatchThreadID) {
+    const uint face = id.x + id.y * gGrid.rowThreads;
+    if (id.x >= gGrid.rowThreads || face >= gGrid.count) return;
+    const uint i = gIndices[3u * face];
+    const uint j = gIndices[3u * face + 1u];
+    const uint k = gIndices[3u * face + 2u];
+    const float3 a = inCells(vertexAt(gPositions, i));
+    const float3 b = inCells(vertexAt(gPositions, j));
+    const float3 c = inCells(vertexAt(gPositions, k));
+    const float3 size = float3(float(gGrid.sizeX), float(gGrid.sizeY), float(gGrid.sizeZ));
+    if (any(max(a, max(b, c)) < 0.0) || any(min(a, min(b, c)) > size)) return;
+    const float3 across = cross(b - a, c - a);
+    const float twice = length(across);
+    if (!(twice > 0.0)) return;
+    const float3 shown = vertexAt(gNormals, i) + vertexAt(gNormals, j) + vertexAt(gNormals, k);
+    const float3 normal = across * ((dot(across, shown) < 0.0 ? -1.0 : 1.0) / twice);
+    const float longest = max(length(b - a), max(length(c - a), length(c - b)));
+    const uint rows = min(uint(3.0 * longest) + 1u, kMostRows);
+    const float squareMetres = gGrid.origin_ws.w * gGrid.origin_ws.w;
+    const float each = 0.5 * twice * squareMetres * gGrid.skinUnit / float(rows * rows);
+    // As many triangles as that, alike, by their middles.
+    for (uint y = 0u; y < rows; ++y) {
+        for (uint x = 0u; x < 2u * (rows - y) - 1u; ++x) {
+            const float third = (x & 1u) != 0u ? 2.0 / 3.0 : 1.0 / 3.0;
+            const float u = (float(x >> 1u) + third) / float(rows);
+            const float v = (float(y) + third) / float(rows);
+            const float3 at = a + (b - a) * u + (c - a) * v;
+            if (any(at < 0.0) || any(at >= size)) continue;
+            const float3 cell = floor(at);
+            const uint first = HAIRLOOM_GRID_SKIN + HAIRLOOM_GRID_CELL_WORDS *
+                               (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
+            addAt(first, each);
+            addAt(first + 1u, each * normal.x);
+            addAt(first + 2u, each * normal.y);
+            addAt(first + 3u, each * normal.z);
+            addAt(first + 4u, each * dot(normal, at - cell - 0.5));
+        }
+    }
+}
