@@ -111,13 +111,30 @@ likeVulkan() {
     awk -v d="$difference" -v most="$2" 'BEGIN { exit !(d < most) }'
 }
 
+# amongSpheres STYLE: the hairstyle without its skin collider, which no kernel for Direct3D 11 knows, and its motion on the CPU.
+amongSpheres() {
+    cli colliders "$pictures/$1.hairloom" --fit none -o "$pictures/$1-spheres.hairloom" &&
+        cli simulate "$pictures/$1-spheres.hairloom" --frames 4 --fps 30 --motion clip:nod_and_turn \
+            --record "$pictures/$1-spheres.frames"
+}
+
+# onDirect3D PROJECT OPTION…: four frames of it.
+onDirect3D() { cli simulate "$pictures/$1.hairloom" --frames 4 --fps 30 --motion clip:nod_and_turn --backend d3d11 "${@:2}"; }
+
+# refusesSkin STYLE: hair that would pass through its skin is not simulated, and you are told why.
+refusesSkin() {
+    local told
+    if told=$(onDirect3D "$1" 2>&1); then return 1; fi
+    printf '%s\n' "$told"
+    grep -q 'Direct3D 11 does not keep hair out of the skin' <<< "$told"
+}
+
 # nearTheCpu STYLE: the device's motion beside that of the engine on the CPU, which knows more effects
 # (docs/gpu-simulation.md): the root mean square of the distances stays below 5 mm, and every point is a number. What the
 # kernels have to hold to is in the tests of gpu_simulation.
 nearTheCpu() {
     local report
-    report=$(cli simulate "$pictures/$1.hairloom" --frames 4 --fps 30 --motion clip:nod_and_turn --backend d3d11 \
-        --against "$pictures/$1.frames" --json) || return
+    report=$(onDirect3D "$1-spheres" --against "$pictures/$1-spheres.frames" --json) || return
     printf '%s\n' "$report"
     measured "$(printf '%s\n' "$report" | awk -F: '/"error_mm":/ { printf "%.2f mm from the CPU", $2 }')"
     printf '%s\n' "$report" | awk -F: '/"error_mm":/ { near = $2 + 0 < 5 && $2 !~ /null/ } /"nan_count":/ { sound = $2 + 0 == 0 }
@@ -179,7 +196,7 @@ buildsDirect3D() {
 # playsOnDirect3D STYLE OPTION…: its hairs lie where the CPU has them.
 playsOnDirect3D() {
     local asset=$pictures/$1.hairrt
-    [ -f "$asset" ] || cli export "$pictures/$1.hairloom" --format runtime -o "$asset" || return
+    [ -f "$asset" ] || cli export "$pictures/$1-spheres.hairloom" --format runtime -o "$asset" || return
     underWine direct3d_hair '^as expected' "$asset" "$out/direct3d-prefix/share/hairloom-runtime/shaders" --check "${@:2}" || return
     measured "$(tr -d '\r' < "$said/printed.txt" | sed -n "s/^apart from the CPU's: //p")"
 }
@@ -201,6 +218,7 @@ for style in "${styles[@]}"; do
         samples/make_hairstyle.sh --project-only "$style" "$pictures"
     check "simulating '$style'" "CPU" cli simulate "$pictures/$style.hairloom" --frames 4 --fps 30 \
         --motion clip:nod_and_turn --record "$pictures/$style.frames"
+    check "'$style' without its skin collider" "CPU" amongSpheres "$style"
     check "picture of '$style'" "Vulkan" pictureOf vulkan "$style.hairloom" "$pictures/$style.hairloom-vulkan.png"
     check "exporting '$style'" "CPU" cli export "$pictures/$style.hairloom" --format hair -o "$pictures/$style.hair"
     check "strands of '$style' alone" "Vulkan" pictureOf vulkan "$style.hair" "$pictures/$style.hair-vulkan.png"
@@ -226,6 +244,7 @@ for renderer in gl vulkan; do
     check "hairloom-cli devices" "$backend" listsDirect3D
     for style in "${styles[@]}"; do
         check "simulating '$style'" "$backend" nearTheCpu "$style"
+        check "skin of '$style' is refused" "$backend" refusesSkin "$style"
         # Hairs of a hairstyle are more than a buffer of the least device holds. Their numbers begin anew in each, and their random
         # samples go by them: what the eye takes for the same stays below 0.02. Strands of one buffer have the same samples.
         check "picture of '$style'" "$backend" likeVulkan "$style.hairloom" 0.02 "$pictures/$style-d3d11-$renderer.png"

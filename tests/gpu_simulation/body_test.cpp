@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/gpu_simulation/device_body.h"
 #include "core/gpu_simulation/gpu_body_push.h"
 #include "core/simulation/body_push.h"
 #include "core/simulation/scene_input.h"
@@ -82,6 +83,11 @@ double meanOf(std::span<const Float3> a, std::span<const Float3> b) {
 
 class BodyOnGpu : public GpuSimulationTest {
   protected:
+    void SetUp() override {
+        GpuSimulationTest::SetUp();
+        if (device() != nullptr && !hasBodyKernels(device()->info()))
+            GTEST_SKIP() << "Direct3D 11 refuses a body, which BodyError tests";
+    }
     struct Both {
         double farthest = 0, mean = 0;      ///< metres between the device's points and the CPU's, in the end
         float gpuDeepest = 0, deepest = 0;  ///< metres in the ball, of all frames
@@ -178,6 +184,7 @@ class BodyLayouts : public BodyOnGpu, public testing::WithParamInterface<LayoutO
   protected:
     void SetUp() override {
         BodyOnGpu::SetUp();
+        if (IsSkipped()) return;
         if (GetParam().members != 1u && device()->info().type == gpu::DeviceType::Cpu)
             GTEST_SKIP() << "a software device compiles this kernel for minutes; run it on a GPU";
     }
@@ -256,6 +263,36 @@ TEST_F(BodyOnGpu, WithoutABodyNothingIsThere) {
     const StrandEngine springs =
         engineOf(input.strands(), settings, beside(test::hairyBody().body, kHeldLayouts[0]));
     EXPECT_EQ(springs.bodyBytes(), 0u) << "springs pass through it";
+}
+
+TEST(BodyError, NamesTheDeviceWithoutSuchKernelsAndWhatToDo) {
+    gpu::DeviceInfo info;
+    info.backend = gpu::Backend::Direct3D11;
+    runtime::SimulationSettings settings = test::hairyBody().simulation;
+    const runtime::BodyField* const body = test::hairyBody().body.get();
+    const std::string why = bodyError(info, settings, body);
+    EXPECT_NE(why.find("Direct3D 11"), std::string::npos) << why;
+    EXPECT_NE(why.find("Remove the skin collider"), std::string::npos) << why;
+    EXPECT_EQ(bodyError(info, settings, nullptr), "");
+    settings.strandModel = runtime::StrandModel::springs;
+    EXPECT_EQ(bodyError(info, settings, body), "") << "springs pass through it";
+    settings.strandModel = runtime::StrandModel::rods;
+    info.backend = gpu::Backend::Vulkan;
+    EXPECT_EQ(bodyError(info, settings, body), "");
+}
+
+/// What the device says where it has no such kernels, and at once: nothing passes through skin unseen.
+TEST_F(GpuSimulationTest, AnEngineMeetsABodyOrRefusesIt) {
+    auto scene = SceneInput::make(test::hairyBody());
+    ASSERT_TRUE(scene);
+    EngineOptions made = options(kRodLayouts[0]);
+    made.velocities = true;
+    made.body = test::hairyBody().body;
+    const auto& settings = scene->groom().simulation;
+    const auto engine = StrandEngine::make(*device(), library(), scene->strands(), settings, made);
+    EXPECT_EQ(engine.has_value(), hasBodyKernels(device()->info()));
+    if (engine) return;
+    EXPECT_EQ(engine.error().message(), bodyError(device()->info(), settings, made.body.get()));
 }
 
 TEST_F(BodyOnGpu, AnotherModelMeetsTheSkinFromItsFirstFrameOn) {
