@@ -7,35 +7,61 @@ StructuredBuffer<uint> gCells : register(t0);
 StructuredBuffer<uint> gSums : register(t1);
 RWStructuredBuffer<float4> gShown : register(u0);
 
+static const float kManyPhotons = 16.0;  // with their whole light, across a cell
+
+float3 sumsAt(uint word) { return float3(float(gSums[word]), float(gSums[word + 1u]), float(gSums[word + 2u])); }
+float3 waysAt(uint word) { return float3(float(int(gSums[word])), float(int(gSums[word + 1u])), float(int(gSums[word + 2u]))); }
+
 [numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint cell = id.x + id.y * gGrid.rowThreads;
     if (id.x >= gGrid.rowThreads || cell >= gGrid.count) return;
     const uint first = cell * HAIRLOOM_GRID_LIGHT_WORDS;
     const uint held = cell * HAIRLOOM_GRID_CELL_WORDS;
-    const float3 sum = float3(float(gSums[first]), float(gSums[first + 1u]), float(gSums[first + 2u]));
-    const float3 way = float3(float(int(gSums[first + 3u])), float(int(gSums[first + 4u])), float(int(gSums[first + 5u])));
-    const float mean = max(dot(sum, 1.0 / 3.0), 1e-6);
-    // A photon's way through the cell in cells, by its volume.
     const float side = gGrid.origin_ws.w;
-    const float unit = gGrid.power / (gGrid.lightUnit * side * side);
-    const float square = gCells[held] == 0u ? -1.0 : float(gSums[first + 6u]) / mean;
-    const float own = float(gCells[held + HAIRLOOM_GRID_SKIN]) / (gGrid.skinUnit * side * side);
-    // Few photons meet the skin of a cell: that of its neighbours counts as well.
+    const bool hasHair = gCells[held] > 0u;
+    const float ownSkin = float(gCells[held + HAIRLOOM_GRID_SKIN]) / (gGrid.skinUnit * side * side);
+    float3 light = sumsAt(first);
+    float3 way = waysAt(first + 3u);
+    float square = float(gSums[first + 6u]);
+    // Few photons meet the skin of a cell: that of its neighbours counts as well. So does their hair, where few go through that
+    // of the cell.
     float3 skin = 0;
-    float area = 0;
+    float skinArea = 0;
+    float3 lightAround = 0;
+    float3 wayAround = 0;
+    float squareAround = 0;
+    float weights = 0;
     const int3 size = int3(int(gGrid.sizeX), int(gGrid.sizeY), int(gGrid.sizeZ));
     const int3 at = int3(int(cell % gGrid.sizeX), int(cell / gGrid.sizeX % gGrid.sizeY), int(cell / gGrid.sizeX / gGrid.sizeY));
-    for (uint i = 0u; i < 27u && own > 0.0; ++i) {
-        const int3 beside = at + int3(int(i % 3u) - 1, int(i / 3u % 3u) - 1, int(i / 9u) - 1);
+    for (uint i = 0u; i < 27u && (hasHair || ownSkin > 0.0); ++i) {
+        const int3 aside = int3(int(i % 3u) - 1, int(i / 3u % 3u) - 1, int(i / 9u) - 1);
+        const int3 beside = at + aside;
         if (any(beside < int3(0, 0, 0)) || any(beside >= size)) continue;
         const uint other = uint(beside.x) + gGrid.sizeX * (uint(beside.y) + gGrid.sizeY * uint(beside.z));
-        const uint sums = other * HAIRLOOM_GRID_LIGHT_WORDS + 7u;
-        skin += float3(float(gSums[sums]), float(gSums[sums + 1u]), float(gSums[sums + 2u]));
-        area += float(gCells[other * HAIRLOOM_GRID_CELL_WORDS + HAIRLOOM_GRID_SKIN]);
+        const uint sums = other * HAIRLOOM_GRID_LIGHT_WORDS;
+        const uint holds = other * HAIRLOOM_GRID_CELL_WORDS;
+        skin += sumsAt(sums + 7u);
+        skinArea += float(gCells[holds + HAIRLOOM_GRID_SKIN]);
+        if (gCells[holds] == 0u) continue;
+        const float weight = (aside.x == 0 ? 2.0 : 1.0) * (aside.y == 0 ? 2.0 : 1.0) * (aside.z == 0 ? 2.0 : 1.0);
+        lightAround += weight * sumsAt(sums);
+        wayAround += weight * waysAt(sums + 3u);
+        squareAround += weight * float(gSums[sums + 6u]);
+        weights += weight;
     }
+    if (weights > 0.0) {
+        const float photons = dot(light, 1.0 / 3.0) / gGrid.lightUnit;
+        const float around = 1.0 / (1.0 + photons / kManyPhotons);
+        light = lerp(light, lightAround / weights, around);
+        way = lerp(way, wayAround / weights, around);
+        square = lerp(square, squareAround / weights, around);
+    }
+    const float mean = max(dot(light, 1.0 / 3.0), 1e-6);
+    // A photon's way through the cell in cells, by its volume.
+    const float unit = gGrid.power / (gGrid.lightUnit * side * side);
     const uint shown = cell * HAIRLOOM_GRID_FLOATS;
-    gShown[shown] = float4(sum * unit, square);
+    gShown[shown] = float4(light * unit, hasHair ? square / mean : -1.0);
     gShown[shown + 1u] = float4(way / mean, 0.0);
-    gShown[shown + 2u] = float4(skin * (gGrid.power * gGrid.skinUnit / (gGrid.lightUnit * max(area, 1.0))), own);
+    gShown[shown + 2u] = float4(skin * (gGrid.power * gGrid.skinUnit / (gGrid.lightUnit * max(skinArea, 1.0))), ownSkin);
 }

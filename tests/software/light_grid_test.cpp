@@ -282,6 +282,44 @@ TEST_F(LightGridTest, IsTheSameOnAnyNumberOfThreads) {
     setThreadCount(0);
 }
 
+// Else hair that moves would flicker, for its cells change their places now and then.
+TEST_F(LightGridTest, OtherPhotonsMakeTheSamePicture) {
+    TestHead head(2000);
+    RenderScene scene = head.scene();
+    scene.strands[0].material.fibre.model = ShadingModel::marschner;
+    scene.strands[0].material.fibre.marschner = greyFibre(0.1);
+    RenderOptions how = options();
+    how.width = how.height = 96;
+    how.lightPhotons = 1u << 17u;
+    const LinearImage one = draw(scene, Scattering::volume, how);
+    how.lightPhotons += 5000;
+    const LinearImage other = draw(scene, Scattering::volume, how);
+    // Of patches of 6 x 6 pixels.
+    double worst = 0, squares = 0, count = 0, most = 0;
+    std::vector<std::pair<double, double>> patches;
+    for (std::uint32_t y = 0; y < 96; y += 6) {
+        for (std::uint32_t x = 0; x < 96; x += 6) {
+            double a = 0, b = 0;
+            for (std::uint32_t i = 0; i < 36; ++i) {
+                const std::size_t at = 4 * (std::size_t{y + i / 6} * 96 + x + i % 6);
+                a += static_cast<double>(one.rgba[at]) / 36;
+                b += static_cast<double>(other.rgba[at]) / 36;
+            }
+            patches.emplace_back(a, b);
+            most = std::max(most, a);
+        }
+    }
+    for (const auto& [a, b] : patches) {
+        if (a < 0.05 * most) continue;
+        worst = std::max(worst, std::abs(b / a - 1));
+        squares += (b / a - 1) * (b / a - 1);
+        ++count;
+    }
+    EXPECT_GT(squares, 0) << "it is of other photons";
+    EXPECT_LT(std::sqrt(squares / count), 0.025);
+    EXPECT_LT(worst, 0.13) << "in the dimmest";
+}
+
 TEST_F(LightGridTest, OneStrandAndLampsAmidstTheHairAreDrawn) {
     TestStrands one;
     one.add({Vec3f::Zero(), Vec3f(0, 0.1f, 0), Vec3f(0, 0.2f, 0)}, 0.0001f);
