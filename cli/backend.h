@@ -18,10 +18,11 @@ namespace hairloom::cli {
 inline const std::map<std::string, gpu::Backend> kGpuBackends{{"vulkan", gpu::Backend::Vulkan},
                                                               {"d3d11", gpu::Backend::Direct3D11}};
 
-/// The shading models as --shading names them.
+/// What becomes of light that hair scatters, as --scatter names it.
 inline const std::map<std::string, render::Scattering> kScatterings{{"single", render::Scattering::single},
                                                                     {"dual", render::Scattering::dual},
                                                                     {"volume", render::Scattering::volume}};
+/// The shading models as --shading names them.
 inline const std::map<std::string, render::ShadingModel> kShadingModels{
     {"kajiya", render::ShadingModel::kajiya},
     {"marschner", render::ShadingModel::marschner},

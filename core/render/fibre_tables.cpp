@@ -193,7 +193,7 @@ Result<FibreTables> FibreTables::make(gpu::Device& device, const FibreMaterial& 
 
 bool FibreTables::hasShaderFor(const StrandShading& material) const {
     return varies_ == material.look.has_value() && material_.model == material.fibre.model &&
-           material_.scattering == material.fibre.scattering;
+           (material_.scattering == Scattering::single) == (material.fibre.scattering == Scattering::single);
 }
 
 HairFlux FibreTables::flux(std::span<const Vec3d> absorptions) const {

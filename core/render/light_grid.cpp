@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shaders/shared/light_grid_types.h"
+
 namespace hairloom::render {
 namespace {
 
 using gpu::Binding;
 
-/// Fibres across a metre that a cell's whole numbers have room for.
-constexpr double kMostHair = 50'000;
+/// A cell's whole numbers have room for so many times the hair that there is in the mean, and for so many
+/// fibres across a metre at least.
+constexpr double kMostHair = 500;
+constexpr double kLeastHair = 1000;
 /// Hairs side by side across a cell, at least.
 constexpr float kFibresAcross = 3;
 /// Hairs in a cell from which on their number is hardly left to chance.
@@ -53,6 +57,7 @@ double powerOf(const Light& light, const Vec3f& low, const Vec3f& high) {
                static_cast<double>(sides.dot(light.toLight_ws.normalized().cwiseAbs()));
     const Vec3f d = light.position_ws - 0.5f * (low + high);
     const double most = static_cast<double>(light.intensity.maxCoeff());
+    if (Box3f(low, high).contains(light.position_ws)) return 4 * static_cast<double>(kPi) * most;
     const double caught = static_cast<double>(sides.dot(d.normalized().cwiseAbs())) /
                           std::max(static_cast<double>(d.squaredNorm()), 1e-12);
     return most * std::min(caught, 4 * static_cast<double>(kPi));
@@ -79,14 +84,15 @@ shaders::LightGridConstants constantsOf(const RendererState& state) {
     c.sizeY = place.size[1];
     c.sizeZ = place.size[2];
     c.photons = place.photons;
-    c.hairUnit = static_cast<float>(std::exp2(30) / (kMostHair * side * side * side));
+    const HairMeasure hair = state.scene.measure();
+    const double mostHair = std::max(kMostHair * static_cast<double>(hair.fibresPerMetre), kLeastHair);
+    c.hairUnit = static_cast<float>(std::exp2(30) / (mostHair * side * side * side));
     c.skinUnit = static_cast<float>(std::exp2(30) / (kMostSkin * side * side));
     // A cell has room for each photon sixteen times.
     c.lightUnit = static_cast<float>(std::min(std::exp2(27) / place.photons, 65536.0));
     c.power = place.power;
-    // Cells that have few fibres by chance let more light through than their mean: by as much fibres at
-    // random count for more.
-    const HairMeasure hair = state.scene.measure();
+    // Where hairs lie at random, a cell holds fewer or more of them by chance, and such cells let more light
+    // through than even ones. Hairs count for more by as much.
     const double share = std::max(static_cast<double>(hair.diameter) / side, 1e-6);
     c.clumping = static_cast<float>(share / (1 - std::exp(-share)));
     const double hairs = static_cast<double>(hair.fibresPerMetre) * side / share;
@@ -109,7 +115,9 @@ void addHair(gpu::CommandList& list, RendererState& state, const shaders::LightG
     for (const DrawBatch& batch : state.scene.batches) {
         const MaterialOnDevice& material = state.scene.materialOf(batch);
         const StrandShading& shading = material.shading;
-        if (shading.tubes || shading.fibre.model == ShadingModel::kajiya) continue;
+        if (shading.tubes || shading.fibre.model == ShadingModel::kajiya ||
+            shading.fibre.scattering == Scattering::single)
+            continue;
         list.setPipeline(
             state.pipelines.compute(shading.look ? "light_grid_hair_look.comp" : "light_grid_hair.comp"));
         material.fibre.bind(list);
@@ -135,7 +143,8 @@ void addSkin(gpu::CommandList& list, RendererState& state, const shaders::LightG
 void placeLightGrid(RendererState& state) {
     state.lightGrid = {};
     const Box3f hair = state.scene.hairBounds();
-    if (!state.plan.runs(Pass::lightGrid) || hair.isEmpty()) return;
+    const bool finite = hair.min().allFinite() && hair.max().allFinite();
+    if (!state.plan.runs(Pass::lightGrid) || hair.isEmpty() || !finite) return;
     // Skin beside the hair lights it, too.
     const float around = 0.05f * hair.diagonal().norm();
     const Box3f box(hair.min() - Vec3f::Constant(around), hair.max() + Vec3f::Constant(around));

@@ -70,7 +70,8 @@ void setUpLights(RendererState& state) {
     shade.ofFibres = flux.ofFibres ? 1 : 0;
     const LightGridPlace& grid = state.lightGrid;
     shade.gridOrigin_ws = toShader(grid.origin_ws, grid.side > 0 ? 1 / grid.side : 0);
-    shade.gridSize = {grid.size[0], grid.size[1], grid.size[2], grid.side > 0 ? 1u : 0u};
+    const bool hasGrid = grid.side > 0 && state.plan.runs(Pass::lightGrid);
+    shade.gridSize = {grid.size[0], grid.size[1], grid.size[2], hasGrid ? 1u : 0u};
     shade.lightCount = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
 }

@@ -38,7 +38,7 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
         return fail(fmt::format("lists of {} pieces of hair for adaptive shadow maps", o.shadowFragments),
                     fmt::format("{} to {}", kMinShadowFragments, kMaxShadowFragments));
     constexpr std::uint32_t kLeast = 1u << 12u;
-    constexpr std::uint32_t kMostCells = 1u << 22u;
+    constexpr std::uint32_t kMostCells = 1u << 20u;
     constexpr std::uint32_t kMostPhotons = 1u << 24u;
     if (o.lightCells < kLeast || o.lightCells > kMostCells)
         return fail(fmt::format("{} cells for light between hairs", o.lightCells),

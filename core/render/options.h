@@ -83,7 +83,7 @@ struct RenderOptions {
     std::uint32_t shadowLights = 8;
     std::uint32_t skyStrands =
         8192;  ///< most strands that maps of the sky count, as so many more; at least 64
-    /// Cells that Scattering::volume follows light in, at most, 2^12…2^22.
+    /// Cells that Scattering::volume follows light in, at most, 2^12…2^20.
     std::uint32_t lightCells = 1u << 18u;
     /// Photons that it follows, 2^12…2^24: noise falls with the square root of their number. Half as many for
     /// `temporal`.

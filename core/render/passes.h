@@ -12,7 +12,6 @@
 #include "core/render/overlay.h"
 #include "core/render/pipelines.h"
 #include "core/render/targets.h"
-#include "shaders/shared/light_grid_types.h"
 
 namespace hairloom::render {
 
@@ -33,7 +32,6 @@ struct DisplayOnDevice {
     gpu::BufferPtr codes;  ///< of its table
 };
 
-/// All that the passes of a frame read.
 /// Cells that light between hairs is followed in, and what follows it.
 struct LightGridPlace {
     Vec3f origin_ws = Vec3f::Zero();  ///< lower corner
@@ -44,6 +42,7 @@ struct LightGridPlace {
     std::array<std::uint32_t, 20> before{};  ///< photons before those of each light, then of the sky
 };
 
+/// All that the passes of a frame read.
 struct RendererState {
     explicit RendererState(gpu::Device& device)
         : pipelines(device), onCpu(device.info().type == gpu::DeviceType::Cpu) {}

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/render/opacity_layers.h"
+#include "shaders/shared/light_grid_types.h"
 #include "shaders/shared/render_types.h"
 
 namespace hairloom::render {

@@ -25,7 +25,7 @@ enum class Pass {
     skyHead,  ///< the same three for light from around
     skyFirst,
     skyLayers,
-    skySeen,  ///< from each curve point
+    skySeen,    ///< from each curve point
     lightGrid,  ///< light between hairs, where it falls
     shade,
     surface,  ///< of what is nearest in each pixel: depth, strand, velocity, albedo

@@ -72,6 +72,7 @@ struct Renderer::Parts {
     std::vector<Light> lights;  ///< as they were given
     Environment environment;
     bool newLights = true;
+    bool newGrid = false;  ///< of light, whose buffers hold nothing yet
     std::uint32_t accumulated = 0;
     std::uint32_t askedLayers = 0;  ///< of opacity, by the options, which the device may have no room for
     bool holdsMaps = false, holdsAverage = false;
@@ -296,7 +297,10 @@ Status Renderer::Parts::prepareTargets(bool presents) {
         changes.add(Changes::head());
         mapped.clear();
     }
-    if (isNew->has(BufferId::lightGrid)) changes.add(Changes::looks());
+    if (isNew->has(BufferId::lightGrid)) {
+        changes.add(Changes::looks());
+        newGrid = true;
+    }
     changes.picture |= isNew->has(TargetId::colour) || isNew->has(BufferId::nearest) ||
                        isNew->has(BufferId::sum) || isNew->has(BufferId::surface);
     if (isNew->has(BufferId::history)) state.temporal = {};
@@ -362,16 +366,18 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
         state.mapDetail = state.detail;
         fitViews(state, sky);
     }
-    const bool grid = changes.grid && !holds;
+    const bool follows = state.plan.runs(Pass::lightGrid);
+    const bool grid = changes.grid && (!holds || newGrid || !follows);
     if (grid) placeLightGrid(state);
-    if (grid && state.plan.runs(Pass::lightGrid)) changes.shading = changes.picture = true;
+    if (grid && follows) changes.shading = changes.picture = true;
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (shadows) recordMaps(list, state, lightAtlas(state));
     if (sky) recordMaps(list, state, skyAtlas(state));
     if (changes.sky && state.plan.runs(Pass::skySeen)) recordSkySeen(list, state);
     if (shadows) mapped = castingLights();
-    if (grid && state.plan.runs(Pass::lightGrid)) recordLightGrid(list, state);
+    if (grid && follows) recordLightGrid(list, state);
+    newGrid = false;
     if (changes.shading && state.plan.runs(Pass::shade)) {
         recordShading(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
@@ -379,7 +385,7 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     if ((changes.picture || state.options.temporal) && state.plan.runs(Pass::surface))
         recordSurface(list, state);
     if (changes.picture) accumulated = 0;
-    heldBack.grid |= holds && changes.grid;
+    heldBack.grid |= holds && changes.grid && !grid;
     if (holds && changes.shadows) heldBack.add(changes.sky ? Changes::head() : Changes::lights());
     changes = Changes::placeholderTexture();
 }
@@ -400,7 +406,7 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
     if (!p.holdsMaps) p.changes.add(std::exchange(p.heldBack, Changes::placeholderTexture()));
     p.before = {p.changes, p.accumulated, p.mapped};
-    const bool moves = p.changes.curves || p.changes.shadows || p.changes.shading;
+    const bool moves = p.changes.curves || p.changes.shadows || p.changes.grid || p.changes.shading;
     p.recordChanges(list);
     const bool blurs = p.state.plan.runs(Pass::shadowBlur);
     if (options.temporal) {
@@ -431,6 +437,7 @@ void Renderer::takeBack() {
     p.accumulated = p.before.accumulated;
     p.mapped = p.before.mapped;
     p.blurredBy = 0;
+    p.newGrid = true;
     p.state.temporal = {};
 }
 

@@ -42,6 +42,8 @@ struct vector3 {
     T& operator[](std::size_t i) { return i == 0 ? x : i == 1 ? y : z; }
     T operator[](std::size_t i) const { return i == 0 ? x : i == 1 ? y : z; }
     vector3 xyz() const { return *this; }
+    vector3 yzx() const { return {y, z, x}; }
+    vector3 zxy() const { return {z, x, y}; }
     vector2<T> xy() const { return {x, y}; }
     vector2<T> yz() const { return {y, z}; }
 };

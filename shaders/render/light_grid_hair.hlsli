@@ -16,11 +16,12 @@ RWStructuredBuffer<uint> gCells : register(u0);
 
 static const uint kMostPieces = 4096u;
 
-void addAt(uint word, float amount) { InterlockedAdd(gCells[word], uint(int(round(amount)))); }
-void addColour(uint word, float3 amount) {
-    addAt(word, amount.x);
-    addAt(word + 1u, amount.y);
-    addAt(word + 2u, amount.z);
+// Rounded by chance, since a piece may be less than the unit.
+void addAt(uint word, float amount, float chance) { InterlockedAdd(gCells[word], uint(int(floor(amount + chance)))); }
+void addThree(uint word, float3 amount, float chance) {
+    addAt(word, amount.x, chance);
+    addAt(word + 1u, amount.y, chance);
+    addAt(word + 2u, amount.z, chance);
 }
 
 [numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
@@ -64,12 +65,13 @@ void main(uint3 id : SV_DispatchThreadID) {
         if (any(cell < int3(0, 0, 0)) || any(cell >= size)) continue;
         const uint first = HAIRLOOM_GRID_CELL_WORDS *
                            (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
-        addAt(first, each);
-        addColour(first + HAIRLOOM_GRID_TANGENT, each * tangent);
-        addColour(first + HAIRLOOM_GRID_ALBEDO, each * moments.albedo);
-        addColour(first + HAIRLOOM_GRID_FIRST, each * moments.first);
-        addColour(first + HAIRLOOM_GRID_SECOND, each * moments.second);
-        addAt(first + HAIRLOOM_GRID_TILT, each * averages.rest.z);
-        addAt(first + HAIRLOOM_GRID_VARIANCE, each * averages.rest.w);
+        const float u = hashUnit(chance + 7u);
+        addAt(first, each, u);
+        addThree(first + HAIRLOOM_GRID_TANGENT, each * tangent, u);
+        addThree(first + HAIRLOOM_GRID_ALBEDO, each * moments.albedo, u);
+        addThree(first + HAIRLOOM_GRID_FIRST, each * moments.first, u);
+        addThree(first + HAIRLOOM_GRID_SECOND, each * moments.second, u);
+        addAt(first + HAIRLOOM_GRID_TILT, each * averages.rest.z, u);
+        addAt(first + HAIRLOOM_GRID_VARIANCE, each * averages.rest.w, u);
     }
 }

@@ -12,6 +12,8 @@ static const float kManyPhotons = 16.0;  // with their whole light, across a cel
 float3 sumsAt(uint word) { return float3(float(gSums[word]), float(gSums[word + 1u]), float(gSums[word + 2u])); }
 float3 waysAt(uint word) { return float3(float(int(gSums[word])), float(int(gSums[word + 1u])), float(int(gSums[word + 2u]))); }
 
+float3 waysInCell(uint word) { return float3(float(int(gCells[word])), float(int(gCells[word + 1u])), float(int(gCells[word + 2u]))); }
+
 [numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint cell = id.x + id.y * gGrid.rowThreads;
@@ -41,8 +43,13 @@ void main(uint3 id : SV_DispatchThreadID) {
         const uint other = uint(beside.x) + gGrid.sizeX * (uint(beside.y) + gGrid.sizeY * uint(beside.z));
         const uint sums = other * HAIRLOOM_GRID_LIGHT_WORDS;
         const uint holds = other * HAIRLOOM_GRID_CELL_WORDS;
-        skin += sumsAt(sums + 7u);
-        skinArea += float(gCells[holds + HAIRLOOM_GRID_SKIN]);
+        // Photons that come to a fold end there.
+        const float3 normal = waysInCell(holds + HAIRLOOM_GRID_SKIN + 1u);
+        const float area = float(gCells[holds + HAIRLOOM_GRID_SKIN]);
+        if (length(normal) >= 0.3 * area) {
+            skin += sumsAt(sums + 7u);
+            skinArea += area;
+        }
         if (gCells[holds] == 0u) continue;
         const float weight = (aside.x == 0 ? 2.0 : 1.0) * (aside.y == 0 ? 2.0 : 1.0) * (aside.z == 0 ? 2.0 : 1.0);
         lightAround += weight * sumsAt(sums);

@@ -16,6 +16,52 @@ float3 vertexAt(StructuredBuffer<float> values, uint vertex) {
 float3 inCells(float3 position_ws) { return (position_ws - gGrid.origin_ws.xyz) / gGrid.origin_ws.w; }
 void addAt(uint word, float amount) { InterlockedAdd(gCells[word], uint(int(round(amount)))); }
 
+float3 gridSize() { return float3(float(gGrid.sizeX), float(gGrid.sizeY), float(gGrid.sizeZ)); }
+
+void addSkin(float3 at, float3 normal, float area) {
+    if (any(at < 0.0) || any(at >= gridSize())) return;
+    const float3 cell = floor(at);
+    const uint first = HAIRLOOM_GRID_SKIN + HAIRLOOM_GRID_CELL_WORDS *
+                       (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
+    addAt(first, area);
+    addAt(first + 1u, area * normal.x);
+    addAt(first + 2u, area * normal.y);
+    addAt(first + 3u, area * normal.z);
+    addAt(first + 4u, area * dot(normal, at - cell - 0.5));
+}
+
+// Of a triangle that reaches far: where it meets the columns of cells along the axis that it faces most, four places each.
+void addByColumns(float3 a, float3 b, float3 c, float3 plane, float3 normal, float unit) {
+    const float3 turned = abs(plane);
+    const bool x = turned.x >= turned.y && turned.x >= turned.z;
+    const bool y = !x && turned.y >= turned.z;
+    // The axis comes last.
+    const float3 p = x ? a.yzx : y ? a.zxy : a;
+    const float3 q = x ? b.yzx : y ? b.zxy : b;
+    const float3 r = x ? c.yzx : y ? c.zxy : c;
+    const float3 n = x ? plane.yzx : y ? plane.zxy : plane;
+    const float3 size = x ? gridSize().yzx : y ? gridSize().zxy : gridSize();
+    const float2 low = clamp(min(p.xy, min(q.xy, r.xy)), 0.0, size.xy);
+    const float2 high = clamp(max(p.xy, max(q.xy, r.xy)), 0.0, size.xy);
+    const float facing = n.z < 0.0 ? -1.0 : 1.0;
+    for (float v = floor(low.y) + 0.25; v < high.y; v += 0.5) {
+        for (float u = floor(low.x) + 0.25; u < high.x; u += 0.5) {
+            const float2 at = float2(u, v);
+            const float2 toP = at - p.xy;
+            const float2 toQ = at - q.xy;
+            const float2 toR = at - r.xy;
+            const float2 pq = q.xy - p.xy;
+            const float2 qr = r.xy - q.xy;
+            const float2 rp = p.xy - r.xy;
+            if (facing * (pq.x * toP.y - pq.y * toP.x) < 0.0 || facing * (qr.x * toQ.y - qr.y * toQ.x) < 0.0 ||
+                facing * (rp.x * toR.y - rp.y * toR.x) < 0.0)
+                continue;
+            const float3 on = float3(u, v, p.z - dot(n.xy, toP) / n.z);
+            addSkin(x ? on.zxy : y ? on.yzx : on, normal, 0.25 * unit / abs(n.z));
+        }
+    }
+}
+
 [numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
     const uint face = id.x + id.y * gGrid.rowThreads;
@@ -33,9 +79,13 @@ void main(uint3 id : SV_DispatchThreadID) {
     if (!(twice > 0.0)) return;
     const float3 shown = vertexAt(gNormals, i) + vertexAt(gNormals, j) + vertexAt(gNormals, k);
     const float3 normal = across * ((dot(across, shown) < 0.0 ? -1.0 : 1.0) / twice);
+    const float squareMetres = gGrid.origin_ws.w * gGrid.origin_ws.w;
     const float longest = max(length(b - a), max(length(c - a), length(c - b)));
     const uint rows = min(uint(3.0 * longest) + 1u, kMostRows);
-    const float squareMetres = gGrid.origin_ws.w * gGrid.origin_ws.w;
+    if (3.0 * longest > float(kMostRows)) {
+        addByColumns(a, b, c, across / twice, normal, squareMetres * gGrid.skinUnit);
+        return;
+    }
     const float each = 0.5 * twice * squareMetres * gGrid.skinUnit / float(rows * rows);
     // As many triangles as that, alike, by their middles.
     for (uint y = 0u; y < rows; ++y) {
@@ -44,15 +94,7 @@ void main(uint3 id : SV_DispatchThreadID) {
             const float u = (float(x >> 1u) + third) / float(rows);
             const float v = (float(y) + third) / float(rows);
             const float3 at = a + (b - a) * u + (c - a) * v;
-            if (any(at < 0.0) || any(at >= size)) continue;
-            const float3 cell = floor(at);
-            const uint first = HAIRLOOM_GRID_SKIN + HAIRLOOM_GRID_CELL_WORDS *
-                               (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
-            addAt(first, each);
-            addAt(first + 1u, each * normal.x);
-            addAt(first + 2u, each * normal.y);
-            addAt(first + 3u, each * normal.z);
-            addAt(first + 4u, each * dot(normal, at - cell - 0.5));
+            addSkin(at, normal, each);
         }
     }
 }

@@ -17,6 +17,7 @@ RWStructuredBuffer<uint> gSums : register(u0);
 
 static const uint kMostSteps = 2000u;
 static const float kEmptyCosine = 0.785;  // mean, where no hair says which way it lies
+static const float kMostLight = 64.0;  // of its share
 static const float kLeast = 0.1;  // of its light, below which a photon goes on by chance
 
 // Numbers of chance of one photon, one after the other (O'Neill 2014).
@@ -335,7 +336,8 @@ void main(uint3 id : SV_DispatchThreadID) {
         if (place.w > 0.0 && all(lampAt > 0.0) && all(lampAt < gridSize())) p = fromWithin(lamp, lampAt, share);
         else p = fromBeside(lamp, lampAt, share, state);
     }
-    p.light *= 1.0 / (gGrid.power * float(end - first));
+    // A lamp close to a side would send photons that outshine all others.
+    p.light = min(p.light / (gGrid.power * float(end - first)), kMostLight);
     const int3 size = int3(int(gGrid.sizeX), int(gGrid.sizeY), int(gGrid.sizeZ));
     int3 cell = clamp(int3(floor(p.at)), int3(0, 0, 0), size - 1);
     float left = -log(1.0 - next(state));

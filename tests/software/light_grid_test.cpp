@@ -268,6 +268,87 @@ TEST_F(LightGridTest, WhiteHairUnderAnEvenSkyIsAsBrightAsTheSky) {
     for (std::size_t i = 2; i < kRows - 2; ++i) EXPECT_NEAR(seen[i], 1, 0.2) << i << " mm";
 }
 
+// A floor of two triangles of 10 m hides the sky below as one of many small ones does.
+TEST_F(LightGridTest, FarTrianglesFillTheirCells) {
+    Block block(greyFibre(0.05), 6);
+    block.scene.lights.clear();
+    block.scene.environment = Environment::gradient(Vec3f::Ones(), Vec3f::Ones());
+    const auto bottom = [&](const RenderScene& scene) {
+        const std::vector<double> seen = rows(draw(scene, Scattering::volume));
+        return seen[kRows - 2] + seen[kRows - 3] + seen[kRows - 4];
+    };
+    const double open = bottom(block.scene);
+    const auto floorOf = [&](int sides, float width) {
+        RenderMesh mesh;
+        mesh.albedo = Vec3f::Zero();
+        mesh.matte = true;
+        std::vector<Vec3f> points;
+        std::vector<std::uint32_t> indices;
+        for (int y = 0; y <= sides; ++y) {
+            for (int x = 0; x <= sides; ++x) {
+                const Vec2f at =
+                    width * (Vec2f(static_cast<float>(x), static_cast<float>(y)) / static_cast<float>(sides) -
+                             Vec2f::Constant(0.5f));
+                points.emplace_back(at.x() + 0.5f * kWide, -kDeep - 0.002f, at.y() + 0.05f);
+            }
+        }
+        const auto row = static_cast<std::uint32_t>(sides + 1);
+        for (std::uint32_t y = 0; y + 1 < row; ++y) {
+            for (std::uint32_t x = 0; x + 1 < row; ++x) {
+                const std::uint32_t a = y * row + x;
+                for (const std::uint32_t i : {a, a + row, a + 1, a + 1, a + row, a + row + 1})
+                    indices.push_back(i);
+            }
+        }
+        RenderScene scene = block.scene;
+        mesh.positions_ws = points;
+        mesh.indices = indices;
+        scene.meshes = {mesh};
+        return bottom(scene);
+    };
+    const double fine = floorOf(64, 1), far = floorOf(1, 10);
+    EXPECT_LT(fine, 0.9 * open);
+    EXPECT_NEAR(far / fine, 1, 0.04);
+}
+
+TEST_F(LightGridTest, FollowsWhatChangesWhileMapsAreHeldAndAfter) {
+    const TestHead head(400);
+    RenderScene scene = head.scene();
+    StrandShading& material = scene.strands[0].material;
+    material.fibre.model = ShadingModel::marschner;
+    material.fibre.scattering = Scattering::volume;
+    RenderOptions how = options();
+    how.frames = 1;
+    const auto shown = [&](Renderer& renderer) {
+        return renderPicture(*device_, renderer, how).value().linear.rgba;
+    };
+    Renderer renderer(*device_);
+    ASSERT_TRUE(renderer.setScene(scene));
+    const auto first = shown(renderer);
+    EXPECT_NE(first, draw(scene, Scattering::dual, how).rgba);
+    renderer.holdMaps(true);
+    StrandShading dull = material;
+    dull.fibre.model = ShadingModel::kajiya;
+    for (const StrandShading& one : {dull, material}) {
+        ASSERT_TRUE(renderer.setMaterial(0, one));
+        for (const float value : shown(renderer)) ASSERT_TRUE(std::isfinite(value));
+    }
+    EXPECT_EQ(shown(renderer), first);
+    material.fibre.marschner.azimuthal.absorption *= 0.3;
+    ASSERT_TRUE(renderer.setMaterial(0, material));
+    shown(renderer);
+    renderer.holdMaps(false);
+    Renderer fresh(*device_);
+    ASSERT_TRUE(fresh.setScene(scene));
+    EXPECT_EQ(shown(renderer), shown(fresh));
+    scene.lights[0].irradiance *= 2;
+    scene.environment = Environment::gradient(Vec3f::Ones(), Vec3f::Zero());
+    ASSERT_TRUE(renderer.setLights(scene.lights));
+    renderer.setEnvironment(scene.environment);
+    ASSERT_TRUE(fresh.setScene(scene));
+    EXPECT_EQ(shown(renderer), shown(fresh));
+}
+
 TEST_F(LightGridTest, IsTheSameOnAnyNumberOfThreads) {
     TestHead head(300);
     RenderScene scene = head.scene();
