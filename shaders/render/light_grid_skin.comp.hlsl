@@ -9,6 +9,7 @@ StructuredBuffer<uint> gIndices : register(t2);
 RWStructuredBuffer<uint> gCells : register(u0);
 
 static const uint kMostRows = 96u;
+static const float kPlaces = 5.0;  // along a side of a cell: corners that are missed let light into the head
 
 float3 vertexAt(StructuredBuffer<float> values, uint vertex) {
     return float3(values[3u * vertex], values[3u * vertex + 1u], values[3u * vertex + 2u]);
@@ -81,8 +82,8 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 normal = across * ((dot(across, shown) < 0.0 ? -1.0 : 1.0) / twice);
     const float squareMetres = gGrid.origin_ws.w * gGrid.origin_ws.w;
     const float longest = max(length(b - a), max(length(c - a), length(c - b)));
-    const uint rows = min(uint(3.0 * longest) + 1u, kMostRows);
-    if (3.0 * longest > float(kMostRows)) {
+    const uint rows = min(uint(kPlaces * longest) + 1u, kMostRows);
+    if (kPlaces * longest > float(kMostRows)) {
         addByColumns(a, b, c, across / twice, normal, squareMetres * gGrid.skinUnit);
         return;
     }

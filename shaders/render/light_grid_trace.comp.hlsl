@@ -358,7 +358,8 @@ void main(uint3 id : SV_DispatchThreadID) {
         if (here.skin > 0.0) {
             const float above = dot(here.normal, p.at - float3(cell) - 0.5) - here.distance;
             const float rises = dot(here.normal, p.way);
-            if (fresh && above < 0.0 && rises > 0.0) return;  // from within the head
+            // From within the head: where light starts there, or where it came in by a corner that no plane closes.
+            if (rises > 0.0 && above < (fresh ? 0.0 : -0.4)) return;
             if (rises < 0.0 && -above >= rises * far) {
                 onSkin = true;
                 far = max(-above / rises, 0.0);

@@ -60,7 +60,8 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
     const float kPi = 3.14159265;
     const float3 toView = normalize(shade.eye_ws.xyz - position_ws * shade.eye_ws.w);
     float3 normal = normalize(normal_ws);
-    if (dot(normal, toView) < 0) normal = -normal;
+    const bool inside = dot(normal, toView) < 0;
+    if (inside) normal = -normal;
     float3 colour = 0;
     for (uint k = 0; k < shade.lightCount; ++k) {
         const LightConstants light = shade.lights[k];
@@ -85,6 +86,6 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
                   (lit * throughHair(shade, shadow, albedo));
     }
     if (hasEnvironment(shade)) colour += albedo * skyOnSkin(shade, position_ws, normal, albedo);
-    if (gridTells(shade)) colour += albedo / kPi * gridLightOnSkin(shade, position_ws);
+    if (gridTells(shade) && !inside) colour += albedo / kPi * gridLightOnSkin(shade, position_ws);
     return colour;
 }
