@@ -48,30 +48,30 @@ LightGridPlace cellsAround(const Box3f& box, std::uint32_t most, float least) {
     return place;
 }
 
+/// m² of the sides of a box across each axis, one of two each.
+Vec3f sidesOf(const Box3f& box) {
+    const Vec3f extent = box.sizes();
+    return {extent.y() * extent.z(), extent.z() * extent.x(), extent.x() * extent.y()};
+}
+
 /// Light that comes into a box from a lamp, and from around: the channel that has most.
-double powerOf(const Light& light, const Vec3f& low, const Vec3f& high) {
-    const Vec3f extent = high - low;
-    const Vec3f sides(extent.y() * extent.z(), extent.z() * extent.x(), extent.x() * extent.y());
+double powerOf(const Light& light, const Box3f& box) {
+    const auto caughtFrom = [&](const Vec3f& way) {
+        return static_cast<double>(sidesOf(box).dot(way.normalized().cwiseAbs()));
+    };
     if (light.kind == LightKind::directional)
-        return static_cast<double>(light.irradiance.maxCoeff()) *
-               static_cast<double>(sides.dot(light.toLight_ws.normalized().cwiseAbs()));
-    const Vec3f d = light.position_ws - 0.5f * (low + high);
+        return static_cast<double>(light.irradiance.maxCoeff()) * caughtFrom(light.toLight_ws);
+    const double all = 4 * static_cast<double>(kPi);
     const double most = static_cast<double>(light.intensity.maxCoeff());
-    if (Box3f(low, high).contains(light.position_ws)) return 4 * static_cast<double>(kPi) * most;
-    const double caught = static_cast<double>(sides.dot(d.normalized().cwiseAbs())) /
-                          std::max(static_cast<double>(d.squaredNorm()), 1e-12);
-    return most * std::min(caught, 4 * static_cast<double>(kPi));
+    if (box.contains(light.position_ws)) return all * most;
+    const Vec3f d = light.position_ws - box.center();
+    return most * std::min(caughtFrom(d) / std::max(static_cast<double>(d.squaredNorm()), 1e-12), all);
 }
 
-double powerOf(const Environment& sky, const Vec3f& low, const Vec3f& high) {
-    const Vec3f extent = high - low;
-    const float area = 2 * (extent.y() * extent.z() + extent.z() * extent.x() + extent.x() * extent.y());
+double powerOf(const Environment& sky, const Box3f& box) {
     constexpr double kEven = 0.28209479;
+    const float area = 2 * sidesOf(box).sum();
     return kEven * static_cast<double>(kPi * area * std::max(sky.coefficients[0].maxCoeff(), 0.0f));
-}
-
-bool isPlaced(const RendererState& state) {
-    return state.lightGrid.side > 0;
 }
 
 shaders::LightGridConstants constantsOf(const RendererState& state) {
@@ -115,9 +115,7 @@ void addHair(gpu::CommandList& list, RendererState& state, const shaders::LightG
     for (const DrawBatch& batch : state.scene.batches) {
         const MaterialOnDevice& material = state.scene.materialOf(batch);
         const StrandShading& shading = material.shading;
-        if (shading.tubes || shading.fibre.model == ShadingModel::kajiya ||
-            shading.fibre.scattering == Scattering::single)
-            continue;
+        if (!standsInLightGrid(shading)) continue;
         list.setPipeline(
             state.pipelines.compute(shading.look ? "light_grid_hair_look.comp" : "light_grid_hair.comp"));
         material.fibre.bind(list);
@@ -140,24 +138,26 @@ void addSkin(gpu::CommandList& list, RendererState& state, const shaders::LightG
 
 }  // namespace
 
+bool standsInLightGrid(const StrandShading& shading) {
+    return !shading.tubes && shading.fibre.model != ShadingModel::kajiya &&
+           shading.fibre.scattering != Scattering::single;
+}
+
 void placeLightGrid(RendererState& state) {
     state.lightGrid = {};
     const Box3f hair = state.scene.hairBounds();
-    const bool finite = hair.min().allFinite() && hair.max().allFinite();
-    if (!state.plan.runs(Pass::lightGrid) || hair.isEmpty() || !finite) return;
+    if (hair.isEmpty() || !hair.min().allFinite() || !hair.max().allFinite()) return;
     // Skin beside the hair lights it, too.
     const float around = 0.05f * hair.diagonal().norm();
     const Box3f box(hair.min() - Vec3f::Constant(around), hair.max() + Vec3f::Constant(around));
     LightGridPlace place =
         cellsAround(box, state.options.lightCells, kFibresAcross * state.scene.measure().diameter);
-    const Vec3f low = place.origin_ws;
-    const Vec3f high =
-        low + place.side * Vec3f(static_cast<float>(place.size[0]), static_cast<float>(place.size[1]),
-                                 static_cast<float>(place.size[2]));
+    const Vec3f cells(static_cast<float>(place.size[0]), static_cast<float>(place.size[1]),
+                      static_cast<float>(place.size[2]));
+    const Box3f lit(place.origin_ws, place.origin_ws + place.side * cells);
     std::vector<double> powers;
-    for (const Light& light : state.lights)
-        powers.push_back(light.castsShadow ? powerOf(light, low, high) : 0);
-    powers.push_back(powerOf(state.environment, low, high));
+    for (const Light& light : state.lights) powers.push_back(light.castsShadow ? powerOf(light, lit) : 0);
+    powers.push_back(powerOf(state.environment, lit));
     double all = 0;
     for (const double power : powers) all += power;
     if (!(all > 0)) return;
@@ -173,7 +173,7 @@ void placeLightGrid(RendererState& state) {
 }
 
 void recordLightGrid(gpu::CommandList& list, RendererState& state) {
-    if (!isPlaced(state)) return;
+    if (!(state.lightGrid.side > 0)) return;
     const shaders::LightGridConstants constants = constantsOf(state);
     const Targets& t = state.targets;
     const std::uint32_t cells = constants.sizeX * constants.sizeY * constants.sizeZ;

@@ -6,8 +6,10 @@
 
 namespace hairloom::render {
 
-/// Cells for the hair of now, and photons for the lights of now; nothing where the plan has no grid or no
-/// light comes in. Before setUpLights().
+/// Hair that takes part: fibres that send light on to others.
+bool standsInLightGrid(const StrandShading& shading);
+/// Cells for the hair of now, and photons for the lights of now; nothing where no light comes in. Before
+/// setUpLights().
 void placeLightGrid(RendererState& state);
 /// Fills the cells and follows the photons; nothing where placeLightGrid() found nothing.
 void recordLightGrid(gpu::CommandList& list, RendererState& state);

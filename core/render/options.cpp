@@ -25,33 +25,25 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     if (o.shadowResolution < kMinShadowResolution || o.shadowResolution > kMaxShadowResolution ||
         o.shadowResolution > limit)
         return fail(fmt::format("a shadow map of {} pixels", o.shadowResolution), "64 to 4096");
-    if (o.shadowLayers < kMinShadowLayers || o.shadowLayers > kMaxShadowLayers)
-        return fail(fmt::format("{} layers of deep opacity maps", o.shadowLayers),
-                    fmt::format("{} to {}", kMinShadowLayers, kMaxShadowLayers));
-    if (o.shadowSlices < 1 || o.shadowSlices > kMaxShadowSlices)
-        return fail(fmt::format("{} slices of opacity maps", o.shadowSlices),
-                    fmt::format("1 to {}", kMaxShadowSlices));
-    if (o.shadowNodes < kMinShadowNodes || o.shadowNodes > kMaxShadowNodes)
-        return fail(fmt::format("{} nodes of adaptive shadow maps", o.shadowNodes),
-                    fmt::format("{} to {}", kMinShadowNodes, kMaxShadowNodes));
-    if (o.shadowFragments < kMinShadowFragments || o.shadowFragments > kMaxShadowFragments)
-        return fail(fmt::format("lists of {} pieces of hair for adaptive shadow maps", o.shadowFragments),
-                    fmt::format("{} to {}", kMinShadowFragments, kMaxShadowFragments));
-    constexpr std::uint32_t kLeast = 1u << 12u;
-    constexpr std::uint32_t kMostCells = 1u << 20u;
-    constexpr std::uint32_t kMostPhotons = 1u << 24u;
-    if (o.lightCells < kLeast || o.lightCells > kMostCells)
-        return fail(fmt::format("{} cells for light between hairs", o.lightCells),
-                    fmt::format("{} to {}", kLeast, kMostCells));
-    if (o.lightPhotons < kLeast || o.lightPhotons > kMostPhotons)
-        return fail(fmt::format("{} photons for light between hairs", o.lightPhotons),
-                    fmt::format("{} to {}", kLeast, kMostPhotons));
+    struct Count {
+        std::uint32_t count, least, most;
+        const char* what;
+    };
+    for (const auto& [count, least, most, what] :
+         {Count{o.shadowLayers, kMinShadowLayers, kMaxShadowLayers, "{} layers of deep opacity maps"},
+          Count{o.shadowSlices, 1, kMaxShadowSlices, "{} slices of opacity maps"},
+          Count{o.shadowNodes, kMinShadowNodes, kMaxShadowNodes, "{} nodes of adaptive shadow maps"},
+          Count{o.shadowFragments, kMinShadowFragments, kMaxShadowFragments,
+                "lists of {} pieces of hair for adaptive shadow maps"},
+          Count{o.lightCells, kMinLightCells, kMaxLightCells, "{} cells for light between hairs"},
+          Count{o.lightPhotons, kMinLightPhotons, kMaxLightPhotons, "{} photons for light between hairs"},
+          Count{o.shadowLights, 1, kMaxLights, "{} lights with shadows"}}) {
+        if (count < least || count > most)
+            return fail(fmt::format(fmt::runtime(what), count), fmt::format("{} to {}", least, most));
+    }
     if (!(o.layerGrowth >= 1 && o.layerGrowth <= kMaxLayerGrowth))
         return fail(fmt::format("layers that grow by {}", o.layerGrowth),
                     fmt::format("1 to {}", kMaxLayerGrowth));
-    if (o.shadowLights < 1 || o.shadowLights > kMaxLights)
-        return fail(fmt::format("{} lights with shadows", o.shadowLights),
-                    fmt::format("1 to {}", kMaxLights));
     if (o.skyStrands < 64)
         return fail(fmt::format("{} strands in maps of the sky", o.skyStrands), "at least 64");
     if (!(o.headAbsorption >= 0 && o.headAbsorption <= kMaxHeadAbsorption)) {

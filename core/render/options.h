@@ -121,6 +121,8 @@ inline constexpr std::uint32_t kMinShadowLayers = 3, kMaxShadowLayers = 11;
 inline constexpr std::uint32_t kMaxShadowSlices = 16;
 inline constexpr std::uint32_t kMinShadowNodes = 4, kMaxShadowNodes = 16;
 inline constexpr std::uint32_t kMinShadowFragments = 1u << 16u, kMaxShadowFragments = 1u << 25u;
+inline constexpr std::uint32_t kMinLightCells = 1u << 12u, kMaxLightCells = 1u << 20u;
+inline constexpr std::uint32_t kMinLightPhotons = 1u << 12u, kMaxLightPhotons = 1u << 24u;
 inline constexpr float kMaxLayerGrowth = 8;
 inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
 inline constexpr float kMaxShadowBlur = 32;          ///< pixels

@@ -268,9 +268,8 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     for (const StrandGroup& group : state.scene.groups) {
         for (const MaterialOnDevice& material : group.materials) {
             facts.look = facts.look || material.shading.look.has_value();
-            const FibreMaterial& fibre = material.shading.fibre;
-            facts.volume = facts.volume || (fibre.model != ShadingModel::kajiya && !material.shading.tubes &&
-                                            fibre.scattering == Scattering::volume);
+            facts.volume = facts.volume || (standsInLightGrid(material.shading) &&
+                                            material.shading.fibre.scattering == Scattering::volume);
             facts.tableBytes += material.fibre.bytes();
         }
     }
@@ -366,17 +365,18 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
         state.mapDetail = state.detail;
         fitViews(state, sky);
     }
-    const bool follows = state.plan.runs(Pass::lightGrid);
-    const bool grid = changes.grid && (!holds || newGrid || !follows);
-    if (grid) placeLightGrid(state);
-    if (grid && follows) changes.shading = changes.picture = true;
+    const bool grid = changes.grid && state.plan.runs(Pass::lightGrid) && (!holds || newGrid);
+    if (grid) {
+        placeLightGrid(state);
+        changes.shading = changes.picture = true;
+    }
     if (changes.shading) setUpLights(state);
     if (changes.curves && state.plan.runs(Pass::curves)) recordCurves(list, state);
     if (shadows) recordMaps(list, state, lightAtlas(state));
     if (sky) recordMaps(list, state, skyAtlas(state));
     if (changes.sky && state.plan.runs(Pass::skySeen)) recordSkySeen(list, state);
     if (shadows) mapped = castingLights();
-    if (grid && follows) recordLightGrid(list, state);
+    if (grid) recordLightGrid(list, state);
     newGrid = false;
     if (changes.shading && state.plan.runs(Pass::shade)) {
         recordShading(list, state);

@@ -34,31 +34,42 @@ FibreMoments tinted(FibreMoments m, float3 share) {
     return result;
 }
 
-// Light among the fibres at a point, and how wide and where along the fibre its two parts leave.
-struct MultipleLight {
-    float3 onward;  // what goes the lamp's way still, times `share`
-    float3 diffuse;
+// Light that fibres have sent on and that still goes the lamp's way, and how wide and where along the fibre it leaves.
+struct OnwardLight {
+    float3 light;  // times `share`
     float3 share;
-    float onwardTilt, onwardVariance;
+    float met;  // fibres that it has met, mean
+    float tilt, variance;
+};
+
+// `before` fibres up to the light.
+OnwardLight onwardLight(FibreAverages averages, float before, float3 tint) {
+    OnwardLight onward;
+    onward.share = shareOf(averages.moments, tint);
+    const Stopped stopped = stoppedBy(tinted(averages.moments, onward.share));
+    onward.light = max(exp(-(stopped.share * before)) - exp(-before), 0.0);
+    onward.met = scatteringsOf(before * dot(averages.forward.rgb * onward.share, 1.0 / 3.0));
+    onward.tilt = averages.rest.z + onward.met * averages.rest.x;
+    onward.variance = averages.rest.w + onward.met * averages.forward.w;
+    return onward;
+}
+
+// Light among the fibres at a point, and how wide and where along the fibre what goes no lamp's way leaves.
+struct MultipleLight {
+    OnwardLight onward;
+    float3 diffuse;
     float diffuseTilt, diffuseVariance;
 };
 
 // `before` fibres up to the light, `all` from side to side; `ground`: albedo of what lies behind them.
 MultipleLight multipleLight(FibreAverages averages, float cosPhi, float before, float all, float3 tint, float3 ground) {
-    const float4 forward = averages.forward;
-    const float4 backward = averages.backward;
-    const float4 rest = averages.rest;
     MultipleLight m;
-    m.share = shareOf(averages.moments, tint);
-    const FibreMoments moments = tinted(averages.moments, m.share);
+    m.onward = onwardLight(averages, before, tint);
+    const FibreMoments moments = tinted(averages.moments, m.onward.share);
     const LayerLight light = lightInLayer(moments, before, all, ground);
-    m.onward = max(light.onward - exp(-before), 0.0);
     m.diffuse = max(moments.albedo * light.fluence - 2.0 * cosPhi * moments.first * light.flux, 0.0) / 6.2831853;
-    const float passed = scatteringsOf(before * dot(forward.rgb * m.share, 1.0 / 3.0));
-    m.onwardTilt = rest.z + passed * rest.x;
-    m.onwardVariance = rest.w + passed * forward.w;
-    m.diffuseTilt = rest.z + (passed + 1.0) * rest.x + rest.y;
-    m.diffuseVariance = rest.w + (passed + 1.0) * forward.w + backward.w;
+    m.diffuseTilt = averages.rest.z + (m.onward.met + 1.0) * averages.rest.x + averages.rest.y;
+    m.diffuseVariance = averages.rest.w + (m.onward.met + 1.0) * averages.forward.w + averages.backward.w;
     return m;
 }
 

@@ -108,8 +108,8 @@ float3 fibreLight(HairMaterial hair, FibreFrame f, float before, float all, floa
         averagesOf(averagesOfLayer(table, c.thetaD, absorption.x), averagesOfLayer(table, c.thetaD, absorption.y),
                    averagesOfLayer(table, c.thetaD, absorption.z));
     const MultipleLight others = multipleLight(averages, f.cosPhi, before, all, tint, ground);
-    const float3 profile = others.share * (hair.scales.x * n.r + hair.scales.y * n.tt + hair.scales.z * n.trt);
-    const float3 multiple = spreadOf(table, f, others.onwardTilt, others.onwardVariance) * others.onward * profile +
+    const float3 profile = others.onward.share * (hair.scales.x * n.r + hair.scales.y * n.tt + hair.scales.z * n.trt);
+    const float3 multiple = spreadOf(table, f, others.onward.tilt, others.onward.variance) * others.onward.light * profile +
                             spreadOf(table, f, others.diffuseTilt, others.diffuseVariance) * others.diffuse;
     return exp(-before) * one + multiple * (c.cosIn / c.dSquared);
 }

@@ -44,26 +44,25 @@ float spreadLongitudinal(FibreConstants fibre, FibreFrame f, float tilt, float v
     return spreadLobe(f, factors, tilt, width);
 }
 
+// As S cos theta_i, but for cos theta_i / cos^2 theta_d.
+float3 onwardFrom(FibreConstants fibre, FibreFrame f, FibreCosines c, OnwardLight onward, float3 absorption) {
+    const float m = spreadLongitudinal(fibre, f, onward.tilt, onward.variance);
+    return m * onward.light * (onward.share * profileAt(float2(0.5 + 0.5 * f.cosPhi, c.thetaD), absorption));
+}
+
 // Times the irradiance: as S cos theta_i. `before` fibres up to the light, `all` from side to side; `ground`: albedo of
 // what lies behind them.
 float3 multipleScattering(FibreConstants fibre, FibreFrame f, float before, float all, float3 tint,
                           float3 absorption, float3 ground) {
     const FibreCosines c = fibreCosines(f);
     const MultipleLight m = multipleLight(averagesAt(c.thetaD, absorption), f.cosPhi, before, all, tint, ground);
-    const float onwardM = spreadLongitudinal(fibre, f, m.onwardTilt, m.onwardVariance);
     const float diffuseM = spreadLongitudinal(fibre, f, m.diffuseTilt, m.diffuseVariance);
-    const float3 n = m.share * profileAt(float2(0.5 + 0.5 * f.cosPhi, c.thetaD), absorption);
-    return (onwardM * m.onward * n + diffuseM * m.diffuse) * (c.cosIn / c.dSquared);
+    return (onwardFrom(fibre, f, c, m.onward, absorption) + diffuseM * m.diffuse) * (c.cosIn / c.dSquared);
 }
 
-// Light that still goes the lamp's way, of which fibres before have let `passed` by without meeting it.
+// Likewise, where a grid has the rest: fibres before have let `passed` of the light by without meeting it.
 float3 onwardScattering(FibreConstants fibre, FibreFrame f, float passed, float3 tint, float3 absorption) {
-    const float before = -log(clamp(passed, 1e-9, 1.0));
     const FibreCosines c = fibreCosines(f);
-    const FibreAverages a = averagesAt(c.thetaD, absorption);
-    const float3 share = shareOf(a.moments, tint);
-    const float3 onward = max(exp(-stoppedBy(tinted(a.moments, share)).share * before) - exp(-before), 0.0);
-    const float met = scatteringsOf(before * dot(a.forward.rgb * share, 1.0 / 3.0));
-    const float m = spreadLongitudinal(fibre, f, a.rest.z + met * a.rest.x, a.rest.w + met * a.forward.w);
-    return m * onward * share * profileAt(float2(0.5 + 0.5 * f.cosPhi, c.thetaD), absorption) * (c.cosIn / c.dSquared);
+    const OnwardLight onward = onwardLight(averagesAt(c.thetaD, absorption), -log(clamp(passed, 1e-9, 1.0)), tint);
+    return onwardFrom(fibre, f, c, onward, absorption) * (c.cosIn / c.dSquared);
 }

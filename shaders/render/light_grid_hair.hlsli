@@ -2,14 +2,11 @@
 // Adds hair to the cells of the grid that light is followed in: a thread for each curve point, which adds the segment behind it.
 #include "shaders/render/curve.hlsli"
 #include "shaders/render/dual.hlsli"
-#include "shaders/shared/light_grid_types.h"
-#ifdef HAIRLOOM_LOOK
-#include "shaders/render/point_dye.hlsli"
-#endif
+#include "shaders/render/fibre_look.hlsli"
+#include "shaders/render/light_cells.hlsli"
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
 cbuffer Fibre : register(b1) { FibreConstants gFibre; };
-cbuffer Grid : register(b4) { LightGridConstants gGrid; };
 StructuredBuffer<CurvePoint> gCurve : register(t0);
 StructuredBuffer<StrandHeader> gStrands : register(t1);
 RWStructuredBuffer<uint> gCells : register(u0);
@@ -32,19 +29,9 @@ void main(uint3 id : SV_DispatchThreadID) {
     const CurvePoint q = gCurve[index + 1u];
     if (p.strand != q.strand) return;
     const StrandHeader strand = gStrands[p.strand];
-    const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
-#ifdef HAIRLOOM_LOOK
-    const float3 absorption = lookAt(placeOf(strand, p.along));
-    const float3 white = exp(sqrt(absorption) / gLook.ownScale);
-    const float3 tint = gShade.bounded != 0 ? min(vary, min(white.x, min(white.y, white.z))) : vary;
-#else
-    const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
-    const float3 tint =
-        min(own * (lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary), gShade.brightestTint);
-    const float3 absorption = 0;
-#endif
-    const FibreAverages averages = averagesAt(0.0, absorption);
-    const FibreMoments moments = tinted(averages.moments, shareOf(averages.moments, tint));
+    const FibreLook look = fibreLookAt(gShade, strand, p.along);
+    const FibreAverages averages = averagesAt(0.0, look.absorption);
+    const FibreMoments moments = tinted(averages.moments, shareOf(averages.moments, look.tint));
     const float3 way = q.position_ws.xyz - p.position_ws.xyz;
     const float metres = length(way);
     if (!(metres > 0.0)) return;
@@ -52,7 +39,6 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float spread = gGrid.spread * gGrid.origin_ws.w;
     const uint pieces = min(uint((spread > 0.0 ? 6.0 : 2.0) * metres / gGrid.origin_ws.w) + 1u, kMostPieces);
     const float each = metres * (p.position_ws.w + q.position_ws.w) * 0.5 * (p.opacity + q.opacity) * gGrid.hairUnit / float(pieces);
-    const int3 size = int3(int(gGrid.sizeX), int(gGrid.sizeY), int(gGrid.sizeZ));
     for (uint i = 0u; i < pieces; ++i) {
         const uint chance = hashUint(index * kMostPieces + i);
         float3 at_ws = p.position_ws.xyz + way * ((float(i) + hashUnit(chance)) / float(pieces));
@@ -62,9 +48,8 @@ void main(uint3 id : SV_DispatchThreadID) {
             at_ws += spread * (a + b - 1.0);
         }
         const int3 cell = int3(floor((at_ws - gGrid.origin_ws.xyz) / gGrid.origin_ws.w));
-        if (any(cell < int3(0, 0, 0)) || any(cell >= size)) continue;
-        const uint first = HAIRLOOM_GRID_CELL_WORDS *
-                           (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
+        if (!inGrid(cell)) continue;
+        const uint first = HAIRLOOM_GRID_CELL_WORDS * cellNumber(cell);
         const float u = hashUnit(chance + 7u);
         addAt(first, each, u);
         addThree(first + HAIRLOOM_GRID_TANGENT, each * tangent, u);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the sums of light_grid_trace.comp.hlsl what shading reads: a thread for each cell.
-#include "shaders/shared/light_grid_types.h"
+#include "shaders/render/light_cells_read.hlsli"
 
-cbuffer Grid : register(b4) { LightGridConstants gGrid; };
-StructuredBuffer<uint> gCells : register(t0);
 StructuredBuffer<uint> gSums : register(t1);
 RWStructuredBuffer<float4> gShown : register(u0);
 
@@ -11,8 +9,6 @@ static const float kManyPhotons = 16.0;  // with their whole light, across a cel
 
 float3 sumsAt(uint word) { return float3(float(gSums[word]), float(gSums[word + 1u]), float(gSums[word + 2u])); }
 float3 waysAt(uint word) { return float3(float(int(gSums[word])), float(int(gSums[word + 1u])), float(int(gSums[word + 2u]))); }
-
-float3 waysInCell(uint word) { return float3(float(int(gCells[word])), float(int(gCells[word + 1u])), float(int(gCells[word + 2u]))); }
 
 [numthreads(HAIRLOOM_LIST_GROUP, 1, 1)]
 void main(uint3 id : SV_DispatchThreadID) {
@@ -34,19 +30,17 @@ void main(uint3 id : SV_DispatchThreadID) {
     float3 wayAround = 0;
     float squareAround = 0;
     float weights = 0;
-    const int3 size = int3(int(gGrid.sizeX), int(gGrid.sizeY), int(gGrid.sizeZ));
     const int3 at = int3(int(cell % gGrid.sizeX), int(cell / gGrid.sizeX % gGrid.sizeY), int(cell / gGrid.sizeX / gGrid.sizeY));
     for (uint i = 0u; i < 27u && (hasHair || ownSkin > 0.0); ++i) {
         const int3 aside = int3(int(i % 3u) - 1, int(i / 3u % 3u) - 1, int(i / 9u) - 1);
         const int3 beside = at + aside;
-        if (any(beside < int3(0, 0, 0)) || any(beside >= size)) continue;
-        const uint other = uint(beside.x) + gGrid.sizeX * (uint(beside.y) + gGrid.sizeY * uint(beside.z));
+        if (!inGrid(beside)) continue;
+        const uint other = cellNumber(beside);
         const uint sums = other * HAIRLOOM_GRID_LIGHT_WORDS;
         const uint holds = other * HAIRLOOM_GRID_CELL_WORDS;
         // Photons that come to a fold end there.
-        const float3 normal = waysInCell(holds + HAIRLOOM_GRID_SKIN + 1u);
         const float area = float(gCells[holds + HAIRLOOM_GRID_SKIN]);
-        if (length(normal) >= 0.3 * area) {
+        if (!isFolded(threeAt(holds + HAIRLOOM_GRID_SKIN + 1u), area)) {
             skin += sumsAt(sums + 7u);
             skinArea += area;
         }

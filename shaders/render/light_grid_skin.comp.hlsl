@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds skin to the cells of the grid that light is followed in: a thread for each triangle.
-#include "shaders/shared/light_grid_types.h"
+#include "shaders/render/light_cells.hlsli"
 
-cbuffer Grid : register(b4) { LightGridConstants gGrid; };
 StructuredBuffer<float> gPositions : register(t0);  // three a vertex
 StructuredBuffer<float> gNormals : register(t1);
 StructuredBuffer<uint> gIndices : register(t2);
@@ -17,13 +16,10 @@ float3 vertexAt(StructuredBuffer<float> values, uint vertex) {
 float3 inCells(float3 position_ws) { return (position_ws - gGrid.origin_ws.xyz) / gGrid.origin_ws.w; }
 void addAt(uint word, float amount) { InterlockedAdd(gCells[word], uint(int(round(amount)))); }
 
-float3 gridSize() { return float3(float(gGrid.sizeX), float(gGrid.sizeY), float(gGrid.sizeZ)); }
-
 void addSkin(float3 at, float3 normal, float area) {
-    if (any(at < 0.0) || any(at >= gridSize())) return;
     const float3 cell = floor(at);
-    const uint first = HAIRLOOM_GRID_SKIN + HAIRLOOM_GRID_CELL_WORDS *
-                       (uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z)));
+    if (!inGrid(int3(cell))) return;
+    const uint first = HAIRLOOM_GRID_SKIN + HAIRLOOM_GRID_CELL_WORDS * cellNumber(int3(cell));
     addAt(first, area);
     addAt(first + 1u, area * normal.x);
     addAt(first + 2u, area * normal.y);
@@ -41,7 +37,8 @@ void addByColumns(float3 a, float3 b, float3 c, float3 plane, float3 normal, flo
     const float3 q = x ? b.yzx : y ? b.zxy : b;
     const float3 r = x ? c.yzx : y ? c.zxy : c;
     const float3 n = x ? plane.yzx : y ? plane.zxy : plane;
-    const float3 size = x ? gridSize().yzx : y ? gridSize().zxy : gridSize();
+    const float3 cells = float3(gridCells());
+    const float3 size = x ? cells.yzx : y ? cells.zxy : cells;
     const float2 low = clamp(min(p.xy, min(q.xy, r.xy)), 0.0, size.xy);
     const float2 high = clamp(max(p.xy, max(q.xy, r.xy)), 0.0, size.xy);
     const float facing = n.z < 0.0 ? -1.0 : 1.0;
@@ -73,8 +70,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 a = inCells(vertexAt(gPositions, i));
     const float3 b = inCells(vertexAt(gPositions, j));
     const float3 c = inCells(vertexAt(gPositions, k));
-    const float3 size = float3(float(gGrid.sizeX), float(gGrid.sizeY), float(gGrid.sizeZ));
-    if (any(max(a, max(b, c)) < 0.0) || any(min(a, min(b, c)) > size)) return;
+    if (any(max(a, max(b, c)) < 0.0) || any(min(a, min(b, c)) > float3(gridCells()))) return;
     const float3 across = cross(b - a, c - a);
     const float twice = length(across);
     if (!(twice > 0.0)) return;

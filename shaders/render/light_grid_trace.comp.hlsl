@@ -5,13 +5,11 @@
 // known exactly from the shadow maps. Sums are of whole numbers, so that they do not depend on the order of threads.
 #include "runtime/shaders/layer_light.hlsli"
 #include "hash.hlsli"
+#include "shaders/render/light_cells_read.hlsli"
 #include "shaders/render/lights.hlsli"
 #include "shaders/render/opacity.hlsli"
-#include "shaders/shared/light_grid_types.h"
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
-cbuffer Grid : register(b4) { LightGridConstants gGrid; };
-StructuredBuffer<uint> gCells : register(t0);
 Texture2D<float> gHeadDepth : register(t8);
 RWStructuredBuffer<uint> gSums : register(u0);
 
@@ -57,7 +55,7 @@ float evenly(uint i) {
     return float(i >> 8u) * (1.0 / 16777216.0);
 }
 
-float3 gridSize() { return float3(float(gGrid.sizeX), float(gGrid.sizeY), float(gGrid.sizeZ)); }
+float3 gridSize() { return float3(gridCells()); }
 uint beforeLight(uint i) { return gGrid.before[i >> 2u][i & 3u]; }
 
 // On a side of the grid's box; `share`: its place within the side.
@@ -157,35 +155,35 @@ struct Cell {
     uint first;       // of its words
     float3 tangent;   // mean: shorter where hairs lie different ways
     float hair;       // fibres across a cell's side
+    float3 straight;  // share of light that they send nearly straight on
+    float least;      // of its channels
     float3 normal;
     float skin;       // area, in sides of a cell squared
     float distance;   // of the skin from the middle, along the normal
-    bool folded;      // its sides face each other, as of a lid or an ear
+    bool folded;
 };
-
-float wordAt(uint word) { return float(int(gCells[word])); }
-float3 colourAt(uint word) { return float3(wordAt(word), wordAt(word + 1u), wordAt(word + 2u)); }
 
 Cell cellAt(int3 at) {
     Cell cell;
-    cell.first = HAIRLOOM_GRID_CELL_WORDS * (uint(at.x) + gGrid.sizeX * (uint(at.y) + gGrid.sizeY * uint(at.z)));
+    cell.first = HAIRLOOM_GRID_CELL_WORDS * cellNumber(at);
     const float side = gGrid.origin_ws.w;
     const float hair = float(gCells[cell.first]);
     cell.hair = hair / (gGrid.hairUnit * side * side) * gGrid.clumping;
-    cell.tangent = hair > 0.0 ? colourAt(cell.first + HAIRLOOM_GRID_TANGENT) / hair : 0.0;
+    cell.tangent = hair > 0.0 ? threeAt(cell.first + HAIRLOOM_GRID_TANGENT) / hair : 0.0;
+    cell.straight = clamp(threeAt(cell.first + HAIRLOOM_GRID_SECOND) / max(hair, 1.0), 0.0, 0.99);
+    cell.least = min(cell.straight.x, min(cell.straight.y, cell.straight.z));
     const float skin = float(gCells[cell.first + HAIRLOOM_GRID_SKIN]);
     cell.skin = skin / (gGrid.skinUnit * side * side);
     cell.normal = 0;
     cell.distance = 0;
     cell.folded = false;
     if (skin > 0.0) {
-        const float3 sum = colourAt(cell.first + HAIRLOOM_GRID_SKIN + 1u);
-        const float along = length(sum);
-        if (along < 0.3 * skin) {
+        const float3 sum = threeAt(cell.first + HAIRLOOM_GRID_SKIN + 1u);
+        if (isFolded(sum, skin)) {
             cell.folded = cell.skin > 0.5;
             cell.skin = 0;
         } else {
-            cell.normal = sum / along;
+            cell.normal = sum / length(sum);
             cell.distance = wordAt(cell.first + HAIRLOOM_GRID_SKIN + 4u) / skin;
         }
     }
@@ -222,29 +220,13 @@ void passThrough(Cell cell, uint index, Photon p, float far, inout uint state) {
     add(sum + 6u, mean * cosine * along, state);
 }
 
-struct Turn {
-    FibreMoments moments;
-    float3 straight;  // share of light that goes nearly straight on
-    float least;      // of its channels
-};
-
-Turn turnIn(Cell cell) {
-    const float hair = max(float(gCells[cell.first]), 1.0);
-    Turn turn;
-    turn.moments.albedo = colourAt(cell.first + HAIRLOOM_GRID_ALBEDO) / hair;
-    turn.moments.first = colourAt(cell.first + HAIRLOOM_GRID_FIRST) / hair;
-    turn.moments.second = colourAt(cell.first + HAIRLOOM_GRID_SECOND) / hair;
-    turn.straight = clamp(turn.moments.second, 0.0, 0.99);
-    turn.least = min(turn.straight.x, min(turn.straight.y, turn.straight.z));
-    return turn;
-}
-
 // A fibre is met: the photon goes straight on or is turned, and keeps what is not absorbed.
 void meetFibre(inout Photon p, Cell cell, inout uint state) {
-    const Turn turn = turnIn(cell);
-    const float stopped = 1.0 - turn.least;
-    const float3 straight = (turn.straight - turn.least) / stopped;
-    const float3 turned = max(turn.moments.albedo - turn.straight, 0.0) / stopped;
+    const float hair = max(float(gCells[cell.first]), 1.0);
+    const float3 albedo = threeAt(cell.first + HAIRLOOM_GRID_ALBEDO) / hair;
+    const float stopped = 1.0 - cell.least;
+    const float3 straight = (cell.straight - cell.least) / stopped;
+    const float3 turned = max(albedo - cell.straight, 0.0) / stopped;
     const float all = max(p.light.x + p.light.y + p.light.z, 1e-20);
     const float goesOn = dot(p.light, straight) / all;
     const float turns = dot(p.light, turned) / all;
@@ -254,7 +236,6 @@ void meetFibre(inout Photon p, Cell cell, inout uint state) {
     }
     p.light *= turned * ((goesOn + turns) / max(turns, 1e-20));
     p.turned = true;
-    const float hair = max(float(gCells[cell.first]), 1.0);
     const float tilt = wordAt(cell.first + HAIRLOOM_GRID_TILT) / hair;
     const float variance = wordAt(cell.first + HAIRLOOM_GRID_VARIANCE) / hair;
     const float u0 = next(state);
@@ -268,7 +249,8 @@ void meetFibre(inout Photon p, Cell cell, inout uint state) {
     const float along = clamp(dot(p.way, fibre), -1.0, 1.0);
     float theta = asin(along) + 2.0 * (tilt + gauss * sqrt(max(variance, 0.0)));
     // By the first moment of what is not straight on.
-    const float3 asymmetric = clamp((turn.moments.first - turn.straight) / max(turn.moments.albedo - turn.straight, 1e-4), -0.5, 0.5);
+    const float3 first = threeAt(cell.first + HAIRLOOM_GRID_FIRST) / hair;
+    const float3 asymmetric = clamp((first - cell.straight) / max(albedo - cell.straight, 1e-4), -0.5, 0.5);
     const float mean = dot(p.light, asymmetric) / max(p.light.x + p.light.y + p.light.z, 1e-20);
     float psi = 0;
     float cosPsi = 1;
@@ -325,8 +307,7 @@ void main(uint3 id : SV_DispatchThreadID) {
         first = beforeLight(gShade.lightCount);
         end = gGrid.photons;
     }
-    const float number = float(index - first);
-    const float2 share = float2((number + 0.5) / float(end - first), evenly(index - first));
+    const float2 share = float2((float(index - first) + 0.5) / float(end - first), evenly(index - first));
     Photon p;
     if (lamp < 0) {
         p = fromSky(share, state);
@@ -338,14 +319,13 @@ void main(uint3 id : SV_DispatchThreadID) {
     }
     // A lamp close to a side would send photons that outshine all others.
     p.light = min(p.light / (gGrid.power * float(end - first)), kMostLight);
-    const int3 size = int3(int(gGrid.sizeX), int(gGrid.sizeY), int(gGrid.sizeZ));
-    int3 cell = clamp(int3(floor(p.at)), int3(0, 0, 0), size - 1);
+    int3 cell = clamp(int3(floor(p.at)), int3(0, 0, 0), gridCells() - 1);
     float left = -log(1.0 - next(state));
     bool fresh = true;  // nothing was met
     for (uint steps = 0u; steps < kMostSteps; ++steps) {
         const Cell here = cellAt(cell);
         if (here.folded) return;  // nothing is known of where it would go
-        const uint number = uint(cell.x) + gGrid.sizeX * (uint(cell.y) + gGrid.sizeY * uint(cell.z));
+        const uint number = cellNumber(cell);
         // Where the way leaves the cell.
         float3 ends = 1e9;
         [unroll] for (int a = 0; a < 3; ++a) {
@@ -365,7 +345,7 @@ void main(uint3 id : SV_DispatchThreadID) {
                 far = max(-above / rises, 0.0);
             }
         }
-        const float stops = here.hair > 0.0 ? here.hair * sqrt(1.0 - alongHair(here, p.way)) * (1.0 - turnIn(here).least) : 0.0;
+        const float stops = here.hair > 0.0 ? here.hair * sqrt(1.0 - alongHair(here, p.way)) * (1.0 - here.least) : 0.0;
         const bool met = stops * far >= left;
         if (met) far = left / stops;
         if (p.turned) passThrough(here, number, p, far, state);
@@ -383,7 +363,7 @@ void main(uint3 id : SV_DispatchThreadID) {
                 meetSkin(p, here, number, state);
             } else {
                 cell = cell + int3(alongAxis(axis, p.way[axis] > 0.0 ? 1.0 : -1.0));
-                if (any(cell < int3(0, 0, 0)) || any(cell >= size)) return;
+                if (!inGrid(cell)) return;
                 continue;
             }
         }

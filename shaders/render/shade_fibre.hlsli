@@ -3,6 +3,7 @@
 // HAIRLOOM_DUAL also what other fibres have scattered before, with HAIRLOOM_LOOK for hair that does not absorb the same
 // everywhere. shade.comp.hlsl does the same for Kajiya-Kay.
 #include "shaders/render/curve.hlsli"
+#include "shaders/render/fibre_look.hlsli"
 #include "shaders/render/shadows.hlsli"
 #include "shaders/render/sky.hlsli"
 #ifdef HAIRLOOM_SADEGHI
@@ -13,9 +14,6 @@
 #ifdef HAIRLOOM_DUAL
 #include "shaders/render/dual.hlsli"
 #include "shaders/render/light_grid.hlsli"
-#endif
-#ifdef HAIRLOOM_LOOK
-#include "shaders/render/point_dye.hlsli"
 #endif
 
 cbuffer Constants : register(b0) { ShadeConstants gShade; };
@@ -34,18 +32,9 @@ void main(uint3 id : SV_DispatchThreadID) {
     const float3 tangent = unpackUnit(p.tangentXy);
     const float3 toView = normalize(gShade.eye_ws.xyz - p.position_ws.xyz * gShade.eye_ws.w);
 
-    const float vary = 1.0 + gShade.brightnessVariation * (strand.random * 2.0 - 1.0);
-#ifdef HAIRLOOM_LOOK
-    const float3 absorption = lookAt(placeOf(strand, p.along));
-    const float3 white = exp(sqrt(absorption) / gLook.ownScale);  // times the colour that much such hair has
-    const float3 tint = gShade.bounded != 0 ? min(vary, min(white.x, min(white.y, white.z))) : vary;
-#else
-    // A strand's own colour is known against the material's, whose absorption the tables hold.
-    const float3 own = strand.albedo.w > 0 ? strand.albedo.rgb / max(gShade.albedo.rgb, 1e-3) : 1.0;
-    const float3 tint =
-        min(own * (lerp(gShade.rootBrightness, gShade.tipBrightness, p.along) * vary), gShade.brightestTint);
-    const float3 absorption = 0;
-#endif
+    const FibreLook look = fibreLookAt(gShade, strand, p.along);
+    const float3 tint = look.tint;
+    const float3 absorption = look.absorption;
     float3 colour = 0;
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];

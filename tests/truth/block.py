@@ -2,10 +2,8 @@
 """A block of 4,000 parallel fibres, 5 cm wide and 3 cm high, lit from above and seen from its open side, by depth: light that has
 been scattered more than once, of which single scattering is taken off, for fibres at random let some in through gaps."""
 
-import json
 import subprocess
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -55,8 +53,9 @@ def _bands(image: np.ndarray) -> np.ndarray:
     return np.array([rows[(depth >= a) & (depth < b)].mean() for a, b in zip(BANDS, BANDS[1:])])
 
 
-def compare(mi, render, cli: Path, plain: list[str], hair: dict, eumelanin: float, seeds: int, samples: int, out: Path) -> list[Band]:
-    """`render(groom, view, name, scatter)` is ours."""
+def compare(ours, plain: list[str], hair: dict, eumelanin: float, seeds: int, samples: int) -> list[Band]:
+    """Of `seeds` blocks, path-traced with `samples` paths a pixel and drawn by `ours`; `plain` are settings of their material."""
+    out = ours.folder
     sums = {key: 0.0 for key in ("truth", "dual", "volume")}
     nothing = out / "nothing.obj"
     nothing.write_text("v 100 0 0\nv 101 0 0\nv 100 1 0\nf 1 2 3\n")
@@ -69,14 +68,13 @@ def compare(mi, render, cli: Path, plain: list[str], hair: dict, eumelanin: floa
             ["import", points, "--unit", "m", "-o", groom],
             ["set", groom, *plain, "-o", groom, "--force"],
         ):
-            subprocess.run([str(c) for c in (cli, *command)], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([str(c) for c in (ours.cli, *command)], check=True, stdout=subprocess.DEVNULL)
         curves = path_trace.write_curves(strands, hair["radius_m"], 1.0, out / f"block{seed}_curves")
-        scene = path_trace.TruthScene(mi, view, eumelanin, nothing, curves)
+        scene = path_trace.TruthScene(ours.mi, view, eumelanin, nothing, curves)
         sums["truth"] += _bands(scene.render(100, samples) - scene.render(2, samples))
-        single = render(groom, view, f"block{seed}", "single")
+        single = ours.render(groom, view, f"block{seed}", "single")
         for way in ("dual", "volume"):
-            sums[way] += _bands(render(groom, view, f"block{seed}", way) - single)
-    (out / "block.json").write_text(json.dumps({key: (s / seeds).tolist() for key, s in sums.items()}, indent=1) + "\n")
+            sums[way] += _bands(ours.render(groom, view, f"block{seed}", way) - single)
     return [
         Band((1e3 * a, 1e3 * b), sums["truth"][i] / seeds, *(sums[way][i] / sums["truth"][i] for way in ("dual", "volume")))
         for i, (a, b) in enumerate(zip(BANDS, BANDS[1:]))

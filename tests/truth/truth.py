@@ -21,8 +21,15 @@ ABSORPTION = np.array([0.419, 0.697, 1.37])
 HEADS = {"skin": [0.5, 0.35, 0.27], "black": [0.0, 0.0, 0.0]}
 LIGHTS = ("key", "back", "side", "box")
 ALL_ORDERS = 100
-
-
+# Of a view file, without the colour.
+HAIR = {
+    "radius_m": 0.0002,
+    "tip_scale": 0.3,
+    "ior": 1.55,
+    "beta_deg": [8.3, 4.2, 16.7],
+    "alpha_deg": [-2.0, 1.0, 3.0],
+    "azimuthal_roughness": 0.3,
+}
 # How ours follows light that other hairs have scattered.
 WAYS = ("dual", "volume")
 
@@ -54,14 +61,7 @@ def view_of(strands: Strands, size: int) -> dict:
             "fov_y_deg": 22.0,
         },
         "size": [size, size],
-        "hair": {
-            "radius_m": 0.0002,
-            "tip_scale": 0.3,
-            "ior": 1.55,
-            "beta_deg": [8.3, 4.2, 16.7],
-            "alpha_deg": [-2.0, 1.0, 3.0],
-            "azimuthal_roughness": 0.3,
-        },
+        "hair": dict(HAIR),
     }
 
 
@@ -122,8 +122,7 @@ class Ours:
         return np.array(self.mi.Bitmap(str(exr)))[..., :3].astype(np.float64)
 
 
-def compare(args: argparse.Namespace, mi) -> list[Verdict]:
-    args.out.mkdir(parents=True, exist_ok=True)
+def compare(args: argparse.Namespace, ours: Ours) -> list[Verdict]:
     hair_file = args.out / "strands.hair"
     subprocess.run(
         [str(args.cli), "export", str(args.groom), "--format", "hair", "-o", str(hair_file)],
@@ -141,14 +140,13 @@ def compare(args: argparse.Namespace, mi) -> list[Verdict]:
     lights = {"view": view["lights"]} if args.view else {name: [light_of(name, view)] for name in args.lights}
     hair = view["hair"]
     curves = path_trace.write_curves(strands, hair["radius_m"], hair["tip_scale"], args.out / "curves")
-    ours = Ours(args.cli, args.out, mi)
     verdicts = []
     for light, head in ((light, head) for light in lights for head in HEADS):
         view["lights"], view["head_albedo"] = lights[light], HEADS[head]
         rows: list[list[np.ndarray]] = [[], [], [], [], []]
         for colour, eumelanin in COLOURS.items():
             hair["sigma_a_per_radius"] = (eumelanin * ABSORPTION).tolist()
-            scene = path_trace.TruthScene(mi, view, eumelanin, args.head, curves)
+            scene = path_trace.TruthScene(ours.mi, view, eumelanin, args.head, curves)
             single, whole = (scene.render(depth, args.samples) for depth in (2, ALL_ORDERS))
             covered = scene.coverage()
             name = f"{light}_{head}_{colour}"
@@ -167,7 +165,7 @@ def compare(args: argparse.Namespace, mi) -> list[Verdict]:
             for row, image in zip(rows, (single, our_single, whole, *ours_of)):
                 row.append(image)
             print(table(verdicts[-1:]).splitlines()[-1], flush=True)
-        judge.save_sheet(mi, rows, args.exposure, args.out / f"sheet_{light}_{head}.png")
+        judge.save_sheet(ours.mi, rows, args.exposure, args.out / f"sheet_{light}_{head}.png")
     return verdicts
 
 
@@ -202,15 +200,14 @@ def main() -> None:
     parser.add_argument("--exposure", type=float, default=6.0, help="factor on the light that is shown and that FLIP sees")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder of results")
     args = parser.parse_args()
-    mi = path_trace.start()
-    verdicts = compare(args, mi)
+    args.out.mkdir(parents=True, exist_ok=True)
+    ours = Ours(args.cli, args.out, path_trace.start())
+    verdicts = compare(args, ours)
     (args.out / "truth.json").write_text(json.dumps([asdict(v) for v in verdicts], indent=1) + "\n")
     (args.out / "truth.md").write_text(table(verdicts))
     print(table(verdicts), end="")
-    hair = view_of(block.fibres(0), block.SIZE)["hair"]
-    hair["sigma_a_per_radius"] = (COLOURS["blond"] * ABSORPTION).tolist()
-    ours = Ours(args.cli, args.out, mi)
-    bands = block.compare(mi, ours.render, args.cli, PLAIN, hair, COLOURS["blond"], args.seeds, args.samples, args.out)
+    hair = {**HAIR, "sigma_a_per_radius": (COLOURS["blond"] * ABSORPTION).tolist()}
+    bands = block.compare(ours, PLAIN, hair, COLOURS["blond"], args.seeds, args.samples)
     (args.out / "block.md").write_text(block.table(bands))
     print(block.table(bands), end="")
 
