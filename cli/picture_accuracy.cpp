@@ -42,6 +42,8 @@ void addPictureAccuracyOptions(CLI::App& job, PictureAccuracyOptions& options) {
     };
     add("--shading", options.shading, "Shading model (default: the project's)")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
+    add("--scatter", options.scatter, "Light scattered by other hairs (default: that of the view, or volume)")
+        ->check(CLI::IsMember(namesOf(kScatterings)));
     add("--size", options.size, "Image size WxH in pixels (default: that of the view, or 640x640)");
     add("--passes", options.frames, "Number of frames averaged in the compared images")
         ->check(CLI::Range(1, 1024));
@@ -61,6 +63,7 @@ Result<Report> pictureAccuracy(const PictureAccuracyOptions& options, const std:
         measuring.view = std::move(*read);
     }
     if (!options.shading.empty()) measuring.view.fibre.model = kShadingModels.at(options.shading);
+    if (!options.scatter.empty()) measuring.view.fibre.scattering = kScatterings.at(options.scatter);
     std::pair<std::uint32_t, std::uint32_t> size = measuring.view.size.value_or(std::pair(640u, 640u));
     if (!options.size.empty()) size = orWrongUsage(parseSize(options.size));
     std::tie(measuring.picture.width, measuring.picture.height) = size;

@@ -148,10 +148,10 @@ TEST_F(AccuracyTest, AMeasuredSettingIsShownInTheViewAndLeavesNoTrace) {
     find<NumberBox>("accuracyPixels")->spinBox().setValue(100);  // fewer points than the hair has
     show->click();
     finishWork();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, 60'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, kPatience));
     const auto first = viewport().pose();
     EXPECT_EQ(first->positions_ws.size(), groom().pointCount());
-    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != first; }, 60'000)) << "it moves";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != first; }, kPatience)) << "it moves";
     for (const Vec3f& point : viewport().pose()->positions_ws) ASSERT_TRUE(point.allFinite());
     EXPECT_EQ(hash(), before);
     show->click();
@@ -173,7 +173,7 @@ TEST_F(AccuracyTest, ASettingIsShownBesideItsPair) {
     EXPECT_TRUE(chosen().contains("Shown in blue: 2 substeps, 12 points")) << chosen().toStdString();
     find<QPushButton>("accuracyShow")->click();
     finishWork();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, 60'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, kPatience));
     for (const int other : {1, 2, 0}) {
         beside->setCurrentIndex(other);
         finishWork();
@@ -285,7 +285,7 @@ TEST_F(AccuracyTest, TheLastSettingAskedForIsTheOneThatIsShown) {
     finishWork();
     finishWork();
     EXPECT_TRUE(show->isChecked()) << "a slider does not end it";
-    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, 60'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() != nullptr; }, kPatience));
     pixels.setValue(0.02);
     parts().tasks.cancel();
     finishWork();
@@ -304,7 +304,7 @@ TEST_F(AccuracyTest, LeavingTheProgramDoesNotWaitForTheReference) {
     const auto seconds = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
     const double begin = seconds();
     find<QPushButton>("accuracyMeasure")->click();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return seconds() > begin + 2; }, 120'000)) << "it is under way";
+    ASSERT_TRUE(QTest::qWaitFor([&] { return seconds() > begin + 2; }, kPatience)) << "it is under way";
     ASSERT_TRUE(parts().tasks.isBusy());
     const double cancelled = seconds();
     parts().tasks.cancel();

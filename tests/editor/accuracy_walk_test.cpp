@@ -61,7 +61,7 @@ class AccuracyWalkTest : public WindowTest {
     }
     void shoot(const char* name) {
         if (!drawn_) return;
-        EXPECT_TRUE(viewport().waitForPicture(120'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         EXPECT_TRUE(QDir().mkpath(HAIRLOOM_SCREENSHOTS));
         const QString file = QStringLiteral(HAIRLOOM_SCREENSHOTS "/accuracy-walk-%1.png").arg(name);
         EXPECT_TRUE(window->grab().save(file));
@@ -98,7 +98,7 @@ TEST_F(AccuracyWalkTest, TheCheapestSettingUnderOnePixelIsFoundByWordsInFourClic
     // What else there is: points that say what they are, another limit, and the way back.
     auto* plot = find<AccuracyPlot>("accuracyPlot");
     QTest::mouseMove(plot, plot->place_px(0).toPoint());
-    ASSERT_TRUE(QTest::qWaitFor([] { return QToolTip::text().contains(" ms, "); }, 60'000))
+    ASSERT_TRUE(QTest::qWaitFor([] { return QToolTip::text().contains(" ms, "); }, kPatience))
         << QToolTip::text().toStdString();
     auto& limit = find<NumberBox>("accuracyMs")->spinBox();
     limit.selectAll();
@@ -115,7 +115,8 @@ TEST_F(AccuracyWalkTest, TheCheapestSettingUnderOnePixelIsFoundByWordsInFourClic
     const auto frameCost = [&] {
         return effects->topLevelItem(0)->data(1, CostBars::kMilliseconds).toDouble();
     };
-    ASSERT_TRUE(QTest::qWaitFor([&] { return effects->topLevelItemCount() > 0 && frameCost() > 0; }, 60'000));
+    ASSERT_TRUE(
+        QTest::qWaitFor([&] { return effects->topLevelItemCount() > 0 && frameCost() > 0; }, kPatience));
     trigger("play.toggle");
     EXPECT_TRUE(effects->topLevelItem(0)->child(0)->text(0).contains("% of the budget"));
     click("Stress test");

@@ -36,7 +36,7 @@ class ColourTest : public WindowTest {
         Q_EMIT choices->activated(index);
     }
     QImage picture() {
-        EXPECT_TRUE(viewport().waitForPicture(120'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         return viewport().picture().copy();
     }
     /// As *Render* makes it.

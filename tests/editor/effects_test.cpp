@@ -36,7 +36,7 @@ class EffectsTest : public WindowTest {
         return nullptr;
     }
     bool waitForRow(const QString& effect) {
-        return QTest::qWaitFor([&] { return row(effect) != nullptr; }, 20'000);
+        return QTest::qWaitFor([&] { return row(effect) != nullptr; }, kPatience);
     }
     /// Of a row as it is shown; 0 while it shows none.
     double milliseconds(const char* effect) {
@@ -45,7 +45,7 @@ class EffectsTest : public WindowTest {
     }
     /// The panel follows the frames that play in its own time.
     bool waitForMilliseconds(const char* effect) {
-        return QTest::qWaitFor([&] { return milliseconds(effect) > 0; }, 60'000);
+        return QTest::qWaitFor([&] { return milliseconds(effect) > 0; }, kPatience);
     }
     bool isOn(const char* name) {
         for (const EffectReport& effect : parts().player.effects()) {
@@ -56,7 +56,7 @@ class EffectsTest : public WindowTest {
     }
     /// Frames that are under way when the plan changes are of the one before.
     bool becomes(const char* effect, bool on) {
-        return QTest::qWaitFor([&] { return isOn(effect) == on; }, 60'000);
+        return QTest::qWaitFor([&] { return isOn(effect) == on; }, kPatience);
     }
     bool play(double seconds) {
         if (!parts().player.isPlaying()) trigger("play.toggle");
@@ -67,7 +67,7 @@ class EffectsTest : public WindowTest {
                 const auto& now = parts().player.frame();
                 return now && now->time > from + seconds;
             },
-            60'000);
+            kPatience);
     }
 };
 
@@ -79,7 +79,7 @@ TEST_F(EffectsTest, PanelPreviewsThePlanBeforePlaying) {
     Groom still = groom();
     still.simulation.windSpeed = 0;
     change("Wind", still);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return !isOn("wind"); }, 20'000)) << "follows the settings";
+    EXPECT_TRUE(QTest::qWaitFor([&] { return !isOn("wind"); }, kPatience)) << "follows the settings";
 }
 
 TEST_F(EffectsTest, DisablingAnEffectForNowKeepsTheDocument) {
@@ -139,7 +139,7 @@ TEST_F(EffectsTest, BarsShowWhatAFrameTakesAgainstTheBudget) {
 
 TEST_F(EffectsTest, EachIntegratorsFailingStepIsShownWithTheSettingAsADot) {
     auto* map = find<StepMap>("stepMap");
-    ASSERT_TRUE(QTest::qWaitFor([&] { return map->words().contains("now rods at 8.3 ms"); }, 20'000))
+    ASSERT_TRUE(QTest::qWaitFor([&] { return map->words().contains("now rods at 8.3 ms"); }, kPatience))
         << map->words().toStdString();
     EXPECT_TRUE(map->words().contains("rods fails at no step"));
     Groom springs = groom();
@@ -147,7 +147,7 @@ TEST_F(EffectsTest, EachIntegratorsFailingStepIsShownWithTheSettingAsADot) {
     springs.simulation.integrator = runtime::Integrator::rk4;
     springs.simulation.substeps = 16;
     change("Springs", springs);
-    ASSERT_TRUE(QTest::qWaitFor([&] { return map->words().contains("now rk4 at 1 ms"); }, 20'000))
+    ASSERT_TRUE(QTest::qWaitFor([&] { return map->words().contains("now rk4 at 1 ms"); }, kPatience))
         << map->words().toStdString();
     EXPECT_TRUE(map->words().contains("rk4 fails beyond a substep of")) << map->words().toStdString();
 }
@@ -178,7 +178,7 @@ TEST_F(EffectsTest, HiddenGaugeRefreshesWhenShown) {
     EXPECT_EQ(factor(), before);
     window->panel("effects")->show();
     window->panel("effects")->raise();
-    EXPECT_TRUE(QTest::qWaitFor([&] { return factor() > before; }, 20'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return factor() > before; }, kPatience));
     const int margin = find<QProgressBar>("stability")->value();
     EXPECT_NEAR(margin, std::max(3.0, 100 * (1 - factor())), 1);
     EXPECT_LT(margin, 100);

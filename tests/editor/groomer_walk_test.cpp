@@ -41,7 +41,7 @@ class GroomerWalkTest : public WindowTest {
         viewport().frameAll();
         viewport().camera().zoom(1.2f);
         viewport().redraw();
-        EXPECT_TRUE(viewport().waitForPicture(600'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         keep(*window);
         viewport().camera() = before;
     }

@@ -381,9 +381,9 @@ TEST_F(HabitsTest, TheViewShowsAsMuchAcrossWhenTheWindowShrinksAndComesBack) {
     for (const QSize size : {QSize(900, 1000), QSize(1280, 700)}) {
         window->resize(size);
         const auto isSeenWhole = [&] { return across().first > 0 && across().second < viewport().width(); };
-        EXPECT_TRUE(QTest::qWaitFor(isSeenWhole, 20'000)) << size.width();
+        EXPECT_TRUE(QTest::qWaitFor(isSeenWhole, kPatience)) << size.width();
     }
-    EXPECT_TRUE(QTest::qWaitFor([&] { return std::abs(share() - wide) < 0.005; }, 20'000)) << share();
+    EXPECT_TRUE(QTest::qWaitFor([&] { return std::abs(share() - wide) < 0.005; }, kPatience)) << share();
     EXPECT_NEAR(0.5 * (across().first + across().second), 0.5 * viewport().width(), 2);
 }
 

@@ -85,7 +85,7 @@ TEST_F(LiveTest, OtherMethodsMoveTheHairAndSayWhatTheyCost) {
                 const auto row = std::ranges::find(effects, effect, &EffectReport::name);
                 return row != effects.end() && row->on && row->milliseconds > 0;
             },
-            240'000);
+            kPatience);
     };
     const auto goesOn = [&] {
         if (!played(now() + 0.2)) return false;
@@ -206,7 +206,7 @@ TEST_F(LiveTest, WhatChangedWhileItPlaysStaysOnTheOtherDevice) {
         // Of hair that the CPU moves a software device draws the guides while it plays.
         std::uint64_t all = groom().strandCount();
         if (kind == EngineKind::gpu) all *= more.followPerGuide;
-        ASSERT_TRUE(QTest::qWaitFor([&] { return drawn == all; }, 60'000)) << drawn << " of " << all;
+        ASSERT_TRUE(QTest::qWaitFor([&] { return drawn == all; }, kPatience)) << drawn << " of " << all;
     }
     trigger("play.reset");
 }
@@ -247,7 +247,8 @@ TEST_F(LiveTest, ADeviceThatIsLostLeavesTheCpu) {
         player.setEngine(EngineWish::gpu);
         player.play();
         const auto plays = [&](double seconds) {
-            return QTest::qWaitFor([&] { return player.frame() && player.frame()->time > seconds; }, 240'000);
+            return QTest::qWaitFor([&] { return player.frame() && player.frame()->time > seconds; },
+                                   kPatience);
         };
         ASSERT_TRUE(plays(0.1));
         EXPECT_EQ(player.engine()->kind, EngineKind::gpu);
@@ -275,7 +276,7 @@ TEST_F(LiveTest, MemoryStaysFlat) {
         const auto goesOn = [&](int count, double seconds) {
             pictures = 0;
             const double begin = now();
-            return QTest::qWaitFor([&] { return pictures >= count && now() > begin + seconds; }, 280'000);
+            return QTest::qWaitFor([&] { return pictures >= count && now() > begin + seconds; }, kPatience);
         };
         // Shaders of what is new are compiled at first.
         ASSERT_TRUE(goesOn(30, 0.5));

@@ -296,7 +296,7 @@ class LookPictureTest : public LookTest {
         drawQuickly();
     }
     QImage shot() {
-        EXPECT_TRUE(viewport().waitForPicture(120'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         EXPECT_FALSE(viewport().picture().isNull()) << window->statusLine().message().toStdString();
         return viewport().picture().convertToFormat(QImage::Format_RGB32);
     }
@@ -372,7 +372,7 @@ TEST_F(LookPictureTest, AReferencePictureStandsBehindTheHead) {
     QImage red(64, 64, QImage::Format_RGB32);
     red.fill(QColor(200, 20, 20));
     viewport().setReference(red, 1);
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const QImage seen = viewport().grab().toImage();
     const QImage& picture = viewport().picture();
     ASSERT_TRUE(picture.hasAlphaChannel());
@@ -383,7 +383,7 @@ TEST_F(LookPictureTest, AReferencePictureStandsBehindTheHead) {
     EXPECT_LT(seen.pixelColor(corner).green(), 40);
     EXPECT_GT(seen.pixelColor(middle).green(), 40) << "the head is opaque";
     viewport().setReference({}, 1);
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_LT(viewport().grab().toImage().pixelColor(corner).red(), 100);
 }
 
@@ -397,7 +397,7 @@ TEST_F(LookPictureTest, ThumbnailsAreDrawnWhenNothingElseIs) {
     applyLook(lookPresets()[0], material);
     const Vec3f white = Vec3f::Ones();
     viewport().requestSidePicture("test", tressPicture(material, 64, white));
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !thumbnail.isNull(); }, 60'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !thumbnail.isNull(); }, kPatience));
     EXPECT_EQ(thumbnail.size(), QSize(64, 64));
     EXPECT_LT(qGray(thumbnail.pixel(32, 32)), 90) << "black hair";
     EXPECT_GT(qGray(thumbnail.pixel(1, 32)), 150) << "beside it";
@@ -416,11 +416,11 @@ TEST_F(LookPictureTest, ThumbnailsAreOfTheTheme) {
         for (int i = 0; i < looks->count(); ++i) count += isDrawn(i) ? 1 : 0;
         return count;
     };
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     for (const Theme theme : {Theme::Light, Theme::Dark}) {
         parts().preferences.setTheme(theme);
         EXPECT_EQ(drawn(), 0) << "none is left of the other theme";
-        EXPECT_TRUE(QTest::qWaitFor([&] { return drawn() > 0; }, 240'000));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return drawn() > 0; }, kPatience));
         for (int i = 0; i < looks->count(); ++i)
             if (isDrawn(i)) {
                 EXPECT_EQ(isLight(i), theme == Theme::Light) << i;

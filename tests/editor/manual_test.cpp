@@ -19,8 +19,6 @@
 namespace hairloom::editor {
 namespace {
 
-constexpr int kPatience = 600'000;  // ms
-
 class ManualTest : public WindowTest {
   protected:
     ManualTest() : WindowTest(true) {}
@@ -223,7 +221,7 @@ TEST_F(ManualTest, Accuracy) {
     find<QPushButton>("accuracyShow")->click();
     finishWork();
     const auto atRest = viewport().pose();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() && viewport().pose() != atRest; }, 60'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return viewport().pose() && viewport().pose() != atRest; }, kPatience));
     QTest::qWait(30'000);  // it moves, and is never the last picture
     shoot(*window, "accuracy");
     find<QPushButton>("accuracyShow")->click();

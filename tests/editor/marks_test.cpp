@@ -25,7 +25,7 @@ TEST_F(MarksTest, MarksNeverWaitForAPicture) {
     openBust();
     viewport().look(render::View::Front);
     viewport().frameAll();
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const QImage before = viewport().grab().toImage();
     const Vec3f middle = groom().scalp->bounds().center();
     bool shown = false;
@@ -53,22 +53,22 @@ TEST_F(MarksTest, MarksNeverWaitForAPicture) {
         }
         return pixels;
     };
-    EXPECT_TRUE(QTest::qWaitFor([&] { return pixelsOf(QColor(255, 0, 255)) > 50; }, 60'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return pixelsOf(QColor(255, 0, 255)) > 50; }, kPatience));
     EXPECT_EQ(reports, 0) << "no picture was made for it";
     EXPECT_EQ(pixelsOf(QColor(0, 255, 255)), 0) << "the head hides it";
     // And go as they came.
     shown = false;
     viewport().redraw();
-    EXPECT_TRUE(QTest::qWaitFor([&] { return viewport().grab().toImage() == before; }, 60'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return viewport().grab().toImage() == before; }, kPatience));
     EXPECT_EQ(reports, 0);
     go.set_value();
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
 }
 
 /// Each of several who wait gets its own, and who gives up takes nobody's else.
 TEST_F(MarksTest, PicturesAsideAreOfWhoAskedForThem) {
     openBust();
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const PictureRequest of = viewport().requestOfView();
     std::vector<std::future<Result<QImage>>> made;
     for (std::uint32_t i = 0; i < 4; ++i) {
@@ -125,18 +125,18 @@ TEST_F(MarksTest, PreviewDensityThinsThePictureAndNothingElse) {
     QObject::connect(&viewport(), &Viewport::drawn, window.get(),
                      [&](const PictureReport& report) { hairs = report.hairs; });
     viewport().redraw();
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const std::uint64_t all = hairs;
     const auto before = hash();
     auto* density = find<NumberBox>("previewDensity");
     Q_EMIT density->edited(20);
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_LT(hairs, all / 2);
     EXPECT_GT(hairs, 0u);
     EXPECT_EQ(viewport().requestOfView().groom->interpolation.followPerGuide, 10u) << "renders have all";
     EXPECT_EQ(hash(), before);
     Q_EMIT density->edited(100);
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_EQ(hairs, all);
 }
 

@@ -88,9 +88,11 @@ TEST_F(PosesTest, HairThatPlaysFollowsTheAmount) {
         return mean(frame->pose->positions_ws);
     };
     // The head holds off some of the hair that the pose leads into it.
-    EXPECT_TRUE(QTest::qWaitFor([&] { return away() < 0.4f * apart; }, 60'000)) << away() << " of " << apart;
+    EXPECT_TRUE(QTest::qWaitFor([&] { return away() < 0.4f * apart; }, kPatience))
+        << away() << " of " << apart;
     set("poseAmount", 0);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return away() > 0.8f * apart; }, 60'000)) << away() << " of " << apart;
+    EXPECT_TRUE(QTest::qWaitFor([&] { return away() > 0.8f * apart; }, kPatience))
+        << away() << " of " << apart;
     trigger("play.toggle");
 }
 

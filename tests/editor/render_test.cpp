@@ -33,7 +33,7 @@ class RenderTest : public WindowTest {
         drawQuickly();
         viewport().look(render::View::Front);
         viewport().frameAll();
-        ASSERT_TRUE(viewport().waitForPicture(120'000));
+        ASSERT_TRUE(viewport().waitForPicture(kPatience));
     }
     /// Opens the dialog by its action and gives it to `use`, which closes it.
     void inDialog(std::function<void(RenderDialog&)> use) {
@@ -53,7 +53,7 @@ class RenderTest : public WindowTest {
     void renderAs(RenderDialog& dialog, const char* name) {
         onceAskedForAFile(inFolder(name));
         QTest::mouseClick(button(dialog, "render"), Qt::LeftButton);
-        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 120'000));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, kPatience));
         QCoreApplication::processEvents();
     }
     QStringList written() const { return QDir(folder.path()).entryList(QDir::Files, QDir::Name); }
@@ -80,7 +80,7 @@ TEST_F(RenderTest, AnImageHasTheSizeAndBackgroundThatWereAskedFor) {
     for (int y = 0; y < 120; ++y)
         for (int x = 0; x < 160; ++x) covered += clear.pixelColor(x, y).alpha() > 8;
     EXPECT_GT(covered, 50) << "thin hair is in it, and covers little of a pixel";
-    EXPECT_TRUE(viewport().waitForPicture(120'000)) << "the view goes on";
+    EXPECT_TRUE(viewport().waitForPicture(kPatience)) << "the view goes on";
 }
 
 TEST_F(RenderTest, ATurntableIsNumberedImagesFromAllSides) {
@@ -254,13 +254,13 @@ TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
         dialog.findChild<QSpinBox*>("renderImages")->setValue(2000);
         onceAskedForAFile(inFolder("turn.png"));
         QTest::mouseClick(button(dialog, "render"), Qt::LeftButton);
-        EXPECT_TRUE(QTest::qWaitFor([&] { return parts().tasks.progress() > 0; }, 120'000));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return parts().tasks.progress() > 0; }, kPatience));
         EXPECT_FALSE(button(dialog, "render")->isEnabled());
-        EXPECT_TRUE(QTest::qWaitFor([&] { return note(dialog).contains("of 2000"); }, 60'000))
+        EXPECT_TRUE(QTest::qWaitFor([&] { return note(dialog).contains("of 2000"); }, kPatience))
             << note(dialog).toStdString();
         QTest::keyClick(&dialog, Qt::Key_Escape);
         EXPECT_TRUE(dialog.isVisible()) << "the first press cancels the work";
-        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, kPatience));
         EXPECT_TRUE(note(dialog).startsWith("Cancelled")) << note(dialog).toStdString();
         EXPECT_TRUE(written().isEmpty()) << written().join(' ').toStdString();
         dialog.findChild<QSpinBox*>("renderImages")->setValue(2);
@@ -269,7 +269,7 @@ TEST_F(RenderTest, CancelLeavesNoFileAndTheDialogGoesOn) {
         QTest::keyClick(&dialog, Qt::Key_Escape);
         EXPECT_FALSE(dialog.isVisible());
     });
-    EXPECT_TRUE(viewport().waitForPicture(120'000));
+    EXPECT_TRUE(viewport().waitForPicture(kPatience));
 }
 
 TEST_F(RenderTest, WhatCannotBeIsSaidBeforeAnythingIsDrawn) {
@@ -286,12 +286,12 @@ TEST_F(RenderTest, WhatCannotBeIsSaidBeforeAnythingIsDrawn) {
         EXPECT_TRUE(button(dialog, "render")->isEnabled());
         set(dialog, FilmOf::Turntable, 32, 32);
         dialog.renderTo(inFolder("film.png"));
-        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, kPatience));
         QCoreApplication::processEvents();
         EXPECT_TRUE(note(dialog).contains("expected .webp")) << note(dialog).toStdString();
         set(dialog, FilmOf::View, 32, 32);
         dialog.renderTo(inFolder("no/such/folder.png"));
-        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, 60'000));
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !parts().tasks.isBusy(); }, kPatience));
         QCoreApplication::processEvents();
         EXPECT_TRUE(note(dialog).contains("folder")) << note(dialog).toStdString();
         dialog.reject();

@@ -106,7 +106,7 @@ TEST_F(SavingTest, ALimitOfFileSizesIsToldAndNothingIsLost) {
     EXPECT_TRUE(isTold);
     EXPECT_TRUE(window->isWindowModified());
     EXPECT_EQ(dragIn(path), before);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return window->statusLine().standing().isEmpty(); }, 20'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return window->statusLine().standing().isEmpty(); }, kPatience));
     EXPECT_TRUE(window->saveTo(inFolder("a.hairloom"))) << said();
     EXPECT_EQ(dragIn(path), 5);
 }

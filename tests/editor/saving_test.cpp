@@ -143,7 +143,7 @@ TEST_F(SavingTest, TheSystemsWordToEndLeavesACopy) {
                 ++ended;
             });
             raise(signal);
-            ASSERT_TRUE(QTest::qWaitFor([&] { return ended > 0; }));
+            ASSERT_TRUE(QTest::qWaitFor([&] { return ended > 0; }, kPatience));
             EXPECT_EQ(signals.last(), signal);
         }
         window.reset();
@@ -296,7 +296,7 @@ TEST_F(SavingTest, ACopyThatCannotBeWrittenIsToldAndTriedAgain) {
     EXPECT_FALSE(window->statusLine().standing().isEmpty()) << "it stays";
     fs::remove(place);
     fs::rename(aside, place);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return window->statusLine().standing().isEmpty(); }, 20'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return window->statusLine().standing().isEmpty(); }, kPatience));
     EXPECT_EQ(dragIn(window->autosave().file().toStdString()), 5);
 }
 
@@ -305,10 +305,10 @@ TEST_F(SavingTest, AtMostAMinuteOfWorkIsLostByDefault) {
     setDrag(5);
     auto* timer = window->autosave().findChild<QTimer*>();
     ASSERT_TRUE(timer);
-    ASSERT_TRUE(QTest::qWaitFor([&] { return timer->isActive(); }, 60'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return timer->isActive(); }, kPatience));
     EXPECT_LT(timer->interval(), 57'000) << "ms, which leaves time to write the copy";
     timer->start(0);  // the minute is over
-    EXPECT_TRUE(QTest::qWaitFor([&] { return QFile::exists(window->autosave().file()); }, 60'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return QFile::exists(window->autosave().file()); }, kPatience));
 }
 
 TEST_F(SavingTest, TheWindowLivesWhileItSaves) {
@@ -395,7 +395,7 @@ TEST_F(SavingTest, TheViewGoesOnWhileALargeGroomIsSavedAndCopied) {
     setDrag(3);
     window->autosave().saveNow();
     const auto copied = [&] { return fs::exists(window->autosave().file().toStdString()); };
-    EXPECT_TRUE(QTest::qWaitFor(copied, 60'000));
+    EXPECT_TRUE(QTest::qWaitFor(copied, kPatience));
     EXPECT_GT(turnsWhile([&] { EXPECT_TRUE(window->saveTo(inFolder("l.hairloom"))); }), 0);
     EXPECT_GT(fs::file_size(file("l.hairloom")), 10'000'000u);
 }

@@ -91,12 +91,12 @@ TEST_F(ToolsTest, ASphereIsRenamedInTheList) {
     const std::string before = groom().spheres[0].name;
     auto* list = find<QTreeWidget>("spheres");
     list->topLevelItem(0)->setText(0, "  Schädel ");
-    ASSERT_TRUE(QTest::qWaitFor([&] { return groom().spheres[0].name == "Schädel"; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return groom().spheres[0].name == "Schädel"; }, kPatience));
     EXPECT_EQ(list->topLevelItem(0)->text(0), "Schädel");
     EXPECT_EQ(document().stepName(0), "Rename sphere");
     // A name of nothing is not taken.
     list->topLevelItem(0)->setText(0, " ");
-    ASSERT_TRUE(QTest::qWaitFor([&] { return list->topLevelItem(0)->text(0) == "Schädel"; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return list->topLevelItem(0)->text(0) == "Schädel"; }, kPatience));
     EXPECT_EQ(document().stepCount(), 1);
     // By hand: names have an editor, numbers have none.
     list->setCurrentItem(list->topLevelItem(0), 1);
@@ -107,7 +107,7 @@ TEST_F(ToolsTest, ASphereIsRenamedInTheList) {
     ASSERT_TRUE(editor);
     editor->setText("Skull");
     QTest::keyClick(editor, Qt::Key_Return);
-    ASSERT_TRUE(QTest::qWaitFor([&] { return groom().spheres[0].name == "Skull"; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return groom().spheres[0].name == "Skull"; }, kPatience));
     document().goToStep(0);
     EXPECT_EQ(list->topLevelItem(0)->text(0).toStdString(), before);
 }
@@ -170,7 +170,7 @@ TEST_F(ToolsTest, TheHeadIsDraggedAndTheHairFollows) {
             const auto& frame = parts().player.frame();
             return frame && frame->pose->head.head_ws.translation().x() > 0.01f;
         },
-        20'000));
+        kPatience));
     release(centre + QPoint(60, 0));
     EXPECT_EQ(hash(), before);
 }

@@ -55,13 +55,13 @@ TEST_P(ScreenshotsTest, WindowAndPanels) {
     Groom windy = groom();
     windy.simulation.windSpeed = 4;
     change("Wind speed", windy);
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     shoot(*window, "window");
     windy.simulation.windDirection = {0, 0, 1};
     change("Wind direction", windy);
     trigger("edit.undo");
     trigger("play.step");
-    ASSERT_TRUE(QTest::qWaitFor([this] { return parts().player.frame() != nullptr; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([this] { return parts().player.frame() != nullptr; }, kPatience));
     window->panel("motion")->raise();
     shoot(*window->panel("motion")->widget(), "panel-motion-under-way");
     trigger("tool.comb");

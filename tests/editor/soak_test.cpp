@@ -124,7 +124,7 @@ class SoakTest : public WindowTest {
         drawQuickly();
         document().open(smallHead(), {}, "small");
         viewport().frameAll();
-        EXPECT_TRUE(viewport().waitForPicture(300'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
     }
 
     std::mt19937 random_;

@@ -31,14 +31,14 @@ class SoftwareWindowTest : public WindowTest {
         restore("HAIRLOOM_RENDERER", renderer_);
         restore("HAIRLOOM_VIEWPORT", surface_);
     }
-    bool drawnWithin(int milliseconds, const std::function<bool(const PictureReport&)>& wanted) {
+    bool drawn(const std::function<bool(const PictureReport&)>& wanted) {
         const std::size_t from = reports_.size();
         return QTest::qWaitFor(
             [&] {
                 return std::any_of(reports_.begin() + static_cast<std::ptrdiff_t>(from), reports_.end(),
                                    wanted);
             },
-            milliseconds);
+            kPatience);
     }
     QString message() { return window->statusLine().message(); }
     /// Guides of a sample, in a small window.
@@ -62,12 +62,12 @@ class SoftwareWindowTest : public WindowTest {
 };
 
 TEST_F(SoftwareWindowTest, ShowsHairAndFollowsTheMouseAndSaysWhoDraws) {
-    ASSERT_TRUE(QTest::qWaitFor([this] { return message().contains("software renderer draws"); }, 20'000))
+    ASSERT_TRUE(QTest::qWaitFor([this] { return message().contains("software renderer draws"); }, kPatience))
         << message().toStdString();
     openSampleHair("short");
     reports_.clear();
     // The head, quick hair, then frames of the still.
-    ASSERT_TRUE(drawnWithin(120'000, isStill)) << message().toStdString();
+    ASSERT_TRUE(drawn(isStill)) << message().toStdString();
     EXPECT_FALSE(viewport().presents());
     EXPECT_GT(skinPixels(viewport().picture()), 300);
     const auto firstHair = std::find_if(reports_.begin(), reports_.end(), hasHair);
@@ -94,13 +94,13 @@ TEST_F(SoftwareWindowTest, ShowsHairAndFollowsTheMouseAndSaysWhoDraws) {
         move();
         return (viewport().camera().camera().eye_ws - eye).norm() > 0.01f;
     };
-    EXPECT_TRUE(QTest::qWaitFor(turned, 60'000)) << "an input waits for a picture";
+    EXPECT_TRUE(QTest::qWaitFor(turned, kPatience)) << "an input waits for a picture";
     go.set_value();
     const auto followed = [&] {
         move();
         return reports_.size() >= before + 5;
     };
-    EXPECT_TRUE(QTest::qWaitFor(followed, 120'000));
+    EXPECT_TRUE(QTest::qWaitFor(followed, kPatience));
     release({420, 340});
     EXPECT_GT((viewport().camera().camera().eye_ws - eye).norm(), 0.01f);
     EXPECT_TRUE(reports_.back().moving);
@@ -109,14 +109,14 @@ TEST_F(SoftwareWindowTest, ShowsHairAndFollowsTheMouseAndSaysWhoDraws) {
 
 TEST_F(SoftwareWindowTest, AStillThatWasDroppedIsThatOfAnUndisturbedOne) {
     openFewHairs();
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const QImage undisturbed = viewport().picture();
     EXPECT_EQ(reports_.back().frames, viewport().quality().frames);
     // Marks alone take nothing back, nor draw anything anew.
     const std::size_t before = reports_.size();
     for (int i = 0; i < 4; ++i) {
         viewport().redraw();
-        ASSERT_TRUE(viewport().waitForPicture(120'000));
+        ASSERT_TRUE(viewport().waitForPicture(kPatience));
     }
     EXPECT_EQ(reports_.size(), before);
     EXPECT_EQ(viewport().picture(), undisturbed);
@@ -126,25 +126,25 @@ TEST_F(SoftwareWindowTest, AStillThatWasDroppedIsThatOfAnUndisturbedOne) {
         viewport().redraw(i < 6);
         QTest::qWait(17 * i);
     }
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_EQ(viewport().picture(), undisturbed);
 }
 
 TEST_F(SoftwareWindowTest, MarksAndTubesAreDrawn) {
     openFewHairs();
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const QImage without = viewport().grab().toImage();
     trigger("overlay.guides");
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_NE(viewport().grab().toImage(), without);
     trigger("overlay.guides");
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_EQ(viewport().grab().toImage(), without);
     Groom tubes = groom();
     tubes.material.tubes = true;
     reports_.clear();
     document().open(std::move(tubes), {}, "tubes");
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     EXPECT_TRUE(hasHair(reports_.back())) << message().toStdString();
 }
 

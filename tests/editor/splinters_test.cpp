@@ -161,9 +161,10 @@ TEST_F(SplintersTest, WorkThatDoesNotSayHowFarItIsHasNoBar) {
                 return 1;
             },
             [](int) {});
-        EXPECT_TRUE(QTest::qWaitFor([&] { return window->statusLine().message().contains("Work"); }, 60'000));
+        EXPECT_TRUE(
+            QTest::qWaitFor([&] { return window->statusLine().message().contains("Work"); }, kPatience));
         if (says) {
-            EXPECT_TRUE(QTest::qWaitFor([&] { return bar->isVisible() && bar->value() == 50; }, 60'000));
+            EXPECT_TRUE(QTest::qWaitFor([&] { return bar->isVisible() && bar->value() == 50; }, kPatience));
         } else {
             QTest::qWait(250);  // a while in which it would come
             EXPECT_FALSE(bar->isVisible());
@@ -265,7 +266,7 @@ TEST_F(SplintersTest, FreshlyPlacedHairStaysWhereItGrew) {
                 const auto& frame = parts().player.frame();
                 return frame && frame->time > (i + 0.5) / 60;
             },
-            20'000));
+            kPatience));
     }
     const auto& positions = parts().player.frame()->pose->positions_ws;
     ASSERT_EQ(positions.size(), groom().pointCount());

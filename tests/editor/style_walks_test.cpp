@@ -104,7 +104,7 @@ class StyleWalkTest : public MouseTest {
         viewport().look(render::View::ThreeQuarter);
         viewport().frameAll();
         viewport().redraw();
-        EXPECT_TRUE(viewport().waitForPicture(600'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         keepForManual(viewport().picture(), "style-" + style);
     }
 
@@ -154,7 +154,7 @@ TEST_F(StyleWalkTest, ABobWithAFringe) {
     EXPECT_GT(lowest(), below) << "cut";
     // And over the eyes.
     shortcut("view.front");
-    ASSERT_TRUE(viewport().waitForPicture(60'000));  // one draws over what one sees
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));  // one draws over what one sees
     tool("cut_line");
     stroke(
         {at(onHead(-0.055f, 0.095f, 0.09f)), at(onHead(0, 0.09f, 0.1f)), at(onHead(0.055f, 0.095f, 0.09f))});

@@ -107,7 +107,7 @@ class SurprisesTest : public WindowTest {
             return table && table->header()->isVisible() &&
                    table->header()->length() > table->viewport()->width();
         };
-        EXPECT_TRUE(QTest::qWaitFor([&] { return !isCut(); }, 20'000))
+        EXPECT_TRUE(QTest::qWaitFor([&] { return !isCut(); }, kPatience))
             << name << ", " << area.objectName().toStdString() << " has " << area.viewport()->width();
     }
     void inEachPanel(const std::function<void(QDockWidget&, const QString&)>& look) {
@@ -334,7 +334,7 @@ TEST_F(SurprisesTest, WhyIsReadableAndPricesLostInNoiseSaySo) {
     openSampleHair("short");
     window->panel("effects")->raise();
     auto* table = find<QTreeWidget>("effects");
-    ASSERT_TRUE(QTest::qWaitFor([&] { return table->topLevelItemCount() > 5; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return table->topLevelItemCount() > 5; }, kPatience));
     trigger("view.resetLayout");  // columns as they are on a screen of 1280 pixels
     QCoreApplication::processEvents();
     EXPECT_FALSE(table->horizontalScrollBar()->isVisible());

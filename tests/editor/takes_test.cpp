@@ -59,7 +59,7 @@ class TakesTest : public WindowTest {
         const auto recorded = [this] {
             return get<QLabel>("takeState")->text().section(' ', 0, 0).toULongLong();
         };
-        ASSERT_TRUE(QTest::qWaitFor([&] { return recorded() >= frames; }, 30'000));
+        ASSERT_TRUE(QTest::qWaitFor([&] { return recorded() >= frames; }, kPatience));
         click("takeRecord");
     }
     /// A recording in which nothing has played.
@@ -124,7 +124,7 @@ TEST_F(TakesTest, WhatPlaysIsRecordedAndScrubbed) {
     EXPECT_NE(frameOf("nod", 0), frameOf("nod", 15));
     // What was recorded is what the simulation plays.
     click("takePlay");
-    EXPECT_TRUE(QTest::qWaitFor([&] { return slider->value() > 3; }, 20'000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return slider->value() > 3; }, kPatience));
     click("takePlay");
     parts().player.play();
     EXPECT_FALSE(get<QPushButton>("takePlay")->isEnabled()) << "the simulation is shown again";
@@ -318,7 +318,7 @@ TEST_F(TakesTest, DistancesToAnotherTakeAreDrawn) {
         << words->text().toStdString() << ", " << largest;
     EXPECT_FALSE(words->isHidden());
     if (!isDrawn()) return;
-    ASSERT_TRUE(viewport().waitForPicture(120'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     QCoreApplication::processEvents();
     QDir().mkpath(HAIRLOOM_SCREENSHOTS);
     EXPECT_TRUE(onScreen().save(HAIRLOOM_SCREENSHOTS "/takes.png"));

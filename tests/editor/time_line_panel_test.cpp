@@ -214,7 +214,7 @@ TEST_F(TimeLinePanelTest, ScrubbingShowsWhatPlayedElseThePosedHead) {
     EXPECT_LT((posed->positions_ws[5] - posed->head.head_ws * groom().positions()[5]).norm(), 1e-6f);
     trigger("play.toggle");
     EXPECT_FALSE(player().isScrubbed());
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, 120'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, kPatience));
     const auto last = player().frame();
     ASSERT_TRUE(last);
     EXPECT_EQ(player().frameCache().runs(), (std::vector<std::pair<std::int64_t, std::int64_t>>{{1, 9}}));
@@ -242,7 +242,8 @@ TEST_F(TimeLinePanelTest, ScrubbingShowsWhatPlayedElseThePosedHead) {
     // Forward from the last frame that was simulated simulates, elsewhere it moves the play head.
     const auto forward = [&](double seconds) {
         trigger("play.step");
-        return QTest::qWaitFor([&] { return player().frame() && player().frame()->time > seconds; }, 120'000);
+        return QTest::qWaitFor([&] { return player().frame() && player().frame()->time > seconds; },
+                               kPatience);
     };
     ASSERT_TRUE(forward(0.02));
     ASSERT_TRUE(forward(0.05));

@@ -63,7 +63,7 @@ TEST_F(TimeLineTest, PlaysAtItsRateToItsEndAndIsUndone) {
     ASSERT_TRUE(player().isPlaying());
     // A window that is busy meanwhile changes nothing.
     QThread::sleep(1);
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, 120'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, kPatience));
     ASSERT_GE(times.size(), 1u);
     EXPECT_NEAR(times.back(), 0.2, 1e-3) << "it stops at its end";
     for (const double time : times)

@@ -76,7 +76,7 @@ TEST_F(TimeLineWalkTest, KeyRecordScrubBackAndExport) {
     window->panel("takes")->raise();
     find<QLineEdit>("takeName")->setText("gust");
     find<QPushButton>("takeRecord")->click();
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, 240'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !player().isPlaying(); }, kPatience));
     find<QPushButton>("takeRecord")->click();
     const auto path = takePath(project(), "gust");
     ASSERT_TRUE(path);
@@ -126,7 +126,7 @@ TEST_F(TimeLineWalkTest, KeyRecordScrubBackAndExport) {
     QProcess command;
     command.start(HAIRLOOM_CLI, {"simulate", inFolder("walk.hairloom"), "--motion", "timeline", "--record",
                                  inFolder("walk.frames")});
-    ASSERT_TRUE(command.waitForFinished(240'000));
+    ASSERT_TRUE(command.waitForFinished(kPatience));
     ASSERT_EQ(command.exitCode(), 0) << command.readAllStandardError().toStdString();
     for (std::int64_t frame = 1; frame <= 12; ++frame) {
         const auto played = player().frameCache().at(frame);

@@ -108,11 +108,11 @@ class PictureTest : public WindowTest {
                       const std::function<bool(const QColor& now, const QColor& before)>& differs);
     /// Each of these overlays changes the picture.
     void expectDrawn(std::initializer_list<const char*> overlays) {
-        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        ASSERT_TRUE(viewport().waitForPicture(kPatience));
         const QImage without = viewport().grab().toImage(), picture = viewport().picture();
         for (const char* name : overlays) {
             trigger((std::string("overlay.") + name).c_str());
-            ASSERT_TRUE(viewport().waitForPicture(60'000));
+            ASSERT_TRUE(viewport().waitForPicture(kPatience));
             EXPECT_NE(viewport().grab().toImage(), without) << name;
             EXPECT_EQ(viewport().picture(), picture) << name << " is laid over it";
             trigger((std::string("overlay.") + name).c_str());
@@ -124,7 +124,7 @@ TEST_F(PictureTest, ThatTakeLongSayWhatTheyDraw) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     Canvas alone;
     alone.setWaiting("Drawing the hair");
-    ASSERT_TRUE(QTest::qWaitFor([&] { return !alone.waitingWords().isEmpty(); }, 10'000));
+    ASSERT_TRUE(QTest::qWaitFor([&] { return !alone.waitingWords().isEmpty(); }, kPatience));
     EXPECT_TRUE(alone.waitingWords().startsWith("Drawing the hair, ")) << alone.waitingWords().toStdString();
     alone.setWaiting({});
     EXPECT_EQ(alone.waitingWords(), "");
@@ -135,18 +135,18 @@ TEST_F(PictureTest, ThatTakeLongSayWhatTheyDraw) {
     files().openSample("short");
     finishWork();
     const auto isDone = [&] { return after.contains("Drawing the hair") && after.last().isEmpty(); };
-    EXPECT_TRUE(QTest::qWaitFor(isDone, 120'000))
+    EXPECT_TRUE(QTest::qWaitFor(isDone, kPatience))
         << after.join('|').toStdString() << ": the head comes first";
 }
 
 TEST_F(PictureTest, ShowsHairAndHead) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openGuides();
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const QImage both = viewport().picture();
     ASSERT_FALSE(both.isNull()) << window->statusLine().message().toStdString();
     find<QCheckBox>("hair")->click();
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     const QImage bald = viewport().picture();
     ASSERT_EQ(bald.size(), both.size());
     int different = 0;
@@ -197,7 +197,7 @@ TEST_F(PictureTest, PartialUpdateRendersLikeAFullUpload) {
     const QPoint crown = at(Vec3f(0, roots.max().y() - 0.03f, roots.max().z()));
     const QPoint end = crown + QPoint(90, 30);
     const auto settled = [this] {
-        EXPECT_TRUE(viewport().waitForPicture(120'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         return viewport().picture();
     };
     moveTo(end);
@@ -260,7 +260,7 @@ TEST_F(PictureTest, MarkersStandWhereTheCameraProjectsThem) {
     });
     for (const bool orthographic : {false, true}) {
         viewport().setOrthographic(orthographic);
-        ASSERT_TRUE(viewport().waitForPicture(60'000));
+        ASSERT_TRUE(viewport().waitForPicture(kPatience));
         const QImage picture = viewport().grab().toImage();
         for (std::size_t i = 0; i < 2; ++i) {
             QPointF sum;
@@ -283,7 +283,7 @@ TEST_F(PictureTest, MarkersStandWhereTheCameraProjectsThem) {
 TEST_F(PictureTest, OfANewDocumentTheHeadIsSeenAtOnceAndTheOldOneNoMore) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openBust();
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     std::vector<std::uint64_t> hairs;
     QObject::connect(&viewport(), &Viewport::drawn, window.get(),
                      [&](const PictureReport& report) { hairs.push_back(report.hairs); });
@@ -291,7 +291,7 @@ TEST_F(PictureTest, OfANewDocumentTheHeadIsSeenAtOnceAndTheOldOneNoMore) {
     EXPECT_TRUE(viewport().picture().isNull());
     const QImage shown = viewport().grab().toImage();
     EXPECT_EQ(skinPixels(shown), 0) << "the bust is gone";
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
     ASSERT_GT(hairs.size(), 1u);
     EXPECT_EQ(hairs.front(), 0u);
     EXPECT_EQ(hairs.back(), groom().strandCount());
@@ -307,7 +307,7 @@ TEST_F(PictureTest, TheScalpIsTintedUntilHairGrows) {
     if (viewport().presents()) GTEST_SKIP() << "pictures are not read back";
     openBust();
     const auto shown = [&] {
-        EXPECT_TRUE(viewport().waitForPicture(60'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         return viewport().grab().toImage();
     };
     const QImage bare = shown();
@@ -342,7 +342,7 @@ TEST_F(PictureTest, OverlaysOfMotionAreDrawn) {
             const auto& frame = parts().player.frame();
             return frame && frame->time > 0.04;
         },
-        20'000));
+        kPatience));
     expectDrawn({"strain", "penetration", "effectCost"});
 }
 
@@ -353,7 +353,7 @@ void PictureTest::paintAndUndo(const QString& file, int least, int most,
                                const std::function<bool(const QColor& now, const QColor& before)>& differs) {
     // Fine pictures only: fast ones differ from them.
     const auto settled = [this] {
-        EXPECT_TRUE(viewport().waitForPicture(60'000));
+        EXPECT_TRUE(viewport().waitForPicture(kPatience));
         return viewport().picture();
     };
     // The ring of the brush stays in one place. The display's own pointer may be there, or have stayed there
@@ -420,9 +420,9 @@ TEST_F(PictureTest, AWindowOfTheDeviceShowsTheHead) {
     const QByteArray wish = qgetenv("HAIRLOOM_VIEWPORT");
     if (wish != "window" && wish != "apart") GTEST_SKIP() << "pictures are read back";
     openBust();
-    ASSERT_TRUE(QTest::qWaitFor([this] { return viewport().presents(); }, 20'000));
-    ASSERT_TRUE(viewport().waitForPicture(60'000));
-    EXPECT_TRUE(QTest::qWaitFor([this] { return skinPixels(viewportOnScreen()) > 300; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([this] { return viewport().presents(); }, kPatience));
+    ASSERT_TRUE(viewport().waitForPicture(kPatience));
+    EXPECT_TRUE(QTest::qWaitFor([this] { return skinPixels(viewportOnScreen()) > 300; }, kPatience));
     // Events reach the window that the device draws to.
     const Vec3f eye = viewport().camera().camera().eye_ws;
     drag({QPoint(200, 200), QPoint(260, 200)});
@@ -441,7 +441,7 @@ TEST_F(ViewportTest, PlayingMovesTheHairAndResettingRestoresIt) {
             const auto& f = parts().player.frame();
             return f && f->time > 0.2;
         },
-        20'000));
+        kPatience));
     const auto pose = viewport().pose();
     ASSERT_TRUE(pose);
     float farthest = 0;
@@ -465,7 +465,7 @@ TEST_F(ViewportTest, SettingsTakeEffectWhileItPlays) {
                 const auto& f = parts().player.frame();
                 return f && f->time > seconds;
             },
-            20'000);
+            kPatience);
     };
     ASSERT_TRUE(played(0.05));
     const auto windIsOn = [this] {
@@ -488,7 +488,7 @@ TEST_F(ViewportTest, ClipsOfTheCharacterPlay) {
     ASSERT_TRUE(parts().player.setMotion("clip:nod_and_turn"));
     EXPECT_FALSE(parts().player.setMotion("clip:no_such"));
     trigger("play.step");
-    ASSERT_TRUE(QTest::qWaitFor([this] { return parts().player.frame() != nullptr; }, 20'000));
+    ASSERT_TRUE(QTest::qWaitFor([this] { return parts().player.frame() != nullptr; }, kPatience));
     EXPECT_EQ(parts().player.frame()->pose->head.scalpPositions_ws.size(), groom().scalp->vertexCount());
 }
 

@@ -31,7 +31,7 @@ class WalkTest : public WindowTest {
         // A slow device is pictures behind; after a few of them it is where the walk is.
         for (int i = 0; i < 3; ++i) {
             const QImage before = viewportOnScreen();
-            ASSERT_TRUE(QTest::qWaitFor([&] { return viewportOnScreen() != before; }, 120'000));
+            ASSERT_TRUE(QTest::qWaitFor([&] { return viewportOnScreen() != before; }, kPatience));
         }
         const QImage screen = onScreen();
         QDir().mkpath(HAIRLOOM_SCREENSHOTS);

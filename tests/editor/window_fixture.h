@@ -29,6 +29,10 @@
 
 namespace hairloom::editor {
 
+/// Milliseconds to wait for what a test checks: the time limit of ctest ends a test that never gets there,
+/// not a machine that is busy or compiles shaders.
+constexpr int kPatience = 800'000;
+
 class WindowTest : public testing::Test {
   protected:
     /// `pictures` are drawn: slow on a software device, and needed by few tests.
@@ -183,7 +187,7 @@ class WindowTest : public testing::Test {
                 const auto& frame = parts().player.frame();
                 return frame && frame->time > seconds;
             },
-            240'000);
+            kPatience);
     }
     /// Keeps a picture of docs/manual.md in the folder that HAIRLOOM_MANUAL names.
     static void keepForManual(const QImage& picture, const QString& name) {

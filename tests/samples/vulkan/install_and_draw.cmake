@@ -99,7 +99,7 @@ foreach(look IN ITEMS "short kajiya" "long marschner" "shoulder marschner streak
         \"target\": [${CMAKE_MATCH_4}, ${CMAKE_MATCH_5}, ${CMAKE_MATCH_6}], \"up\": [0, 1, 0], \"fov_y_deg\": 48.887909},
         \"lights\": [{\"type\": \"directional\", \"to_light\": [0.5, 0.70710678, 0.5], \"irradiance\": [2, 2, 2]}],
         \"subdivisions\": 1}")
-    run("${CLI}" render "${WORK}/${name}.hairloom" --view "${WORK}/${name}.view.json" --hide * --size 640x640 --passes 4
+    run("${CLI}" render "${WORK}/${name}.hairloom" --view "${WORK}/${name}.view.json" --hide * --size 640x640 --passes 4 --scatter dual
         --exr "${WORK}/${name}.exr" -o "${PICTURES}/ours-${name}.png")
     run("${DIFFERENCE}" "${WORK}/${name}.exr" "${image}" 8)
     message("${name}: ${output}")
