@@ -103,6 +103,10 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     finishWork();
     ASSERT_FALSE(groom().spheres.empty());
     // Wind, and let it blow.
+    drawQuickly();
+    Groom thinner = groom();
+    thinner.interpolation.followPerGuide = 2;
+    change("Fewer follow hairs", thinner);
     trigger("tool.wind");
     const QPoint centre = at(viewport().camera().target_ws());
     drag({centre, centre + QPoint(70, 0), centre + QPoint(110, 0)});
