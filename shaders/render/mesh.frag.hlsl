@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shaders/render/skin.hlsli"
 
-cbuffer Constants : register(b0) { ShadeConstants gShade; };
 cbuffer Mesh : register(b1) { MeshConstants gMesh; };
 
 struct Input {
@@ -12,5 +11,5 @@ struct Input {
 };
 
 float4 main(Input i) : SV_Target0 {
-    return float4(skinLight(gShade, gMesh, i.position_ws, i.normal_ws, i.albedo), 1);
+    return float4(skinLight(gMesh, i.position_ws, i.normal_ws, i.albedo), 1);
 }

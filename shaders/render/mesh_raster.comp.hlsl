@@ -4,7 +4,6 @@
 #include "shaders/render/skin.hlsli"
 #include "shaders/render/triangle_raster.hlsli"
 
-cbuffer Constants : register(b0) { ShadeConstants gShade; };
 StructuredBuffer<float> gNormals : register(t1);
 StructuredBuffer<float> gAlbedo : register(t3);
 StructuredBuffer<uint> gCover : register(t4);     // of hair, where that is sorted
@@ -13,7 +12,7 @@ RWStructuredBuffer<uint> gLight : register(u1);
 
 float3 lightAt(Corners c, float2 at, uint face) {
     const float3 shares = sharesOfFace(c, at);
-    return skinLight(gShade, gMesh, onFace(gPositions, face, shares), onFace(gNormals, face, shares), onFace(gAlbedo, face, shares));
+    return skinLight(gMesh, onFace(gPositions, face, shares), onFace(gNormals, face, shares), onFace(gAlbedo, face, shares));
 }
 
 void visitPixel(Corners c, int2 pixel, uint face) {

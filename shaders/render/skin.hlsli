@@ -5,6 +5,9 @@
 #include "shaders/render/shadows.hlsli"
 #include "shaders/render/sky_maps.hlsli"
 
+// Lights are read from here: to a function that is given all constants, compilers copy every light, for every pixel.
+cbuffer Constants : register(b0) { ShadeConstants gShade; };
+
 // Of the hair over the skin, where it is of fibres and not Kajiya-Kay's.
 FibreMoments hairOverSkin(ShadeConstants shade) {
     FibreMoments fibre;
@@ -56,15 +59,15 @@ float3 skyOnSkin(ShadeConstants shade, float3 position_ws, float3 normal, float3
     return plain * (passed / max(all, 1e-6)) / (1.0 - 0.5 * caught * sentOn * (1.0 + albedo));
 }
 
-float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
+float3 skinLight(MeshConstants mesh, float3 position_ws, float3 normal_ws, float3 albedo) {
     const float kPi = 3.14159265;
-    const float3 toView = normalize(shade.eye_ws.xyz - position_ws * shade.eye_ws.w);
+    const float3 toView = normalize(gShade.eye_ws.xyz - position_ws * gShade.eye_ws.w);
     float3 normal = normalize(normal_ws);
     const bool inside = dot(normal, toView) < 0;
     if (inside) normal = -normal;
     float3 colour = 0;
-    for (uint k = 0; k < shade.lightCount; ++k) {
-        const LightConstants light = shade.lights[k];
+    for (uint k = 0; k < gShade.lightCount; ++k) {
+        const LightConstants light = gShade.lights[k];
         const float3 toLight = directionToLight(light, position_ws);
         const float nl = dot(normal, toLight);
         const float reached = saturate(nl * 8.0 + 0.6);
@@ -83,9 +86,9 @@ float3 skinLight(ShadeConstants shade, MeshConstants mesh, float3 position_ws, f
                                pow(saturate(dot(normal, middle)), m) * saturate(nl);
         const float lit = reached * shadow.visibility;
         colour += irradianceOf(light, position_ws) * (albedo / kPi * diffuse + specular) *
-                  (lit * throughHair(shade, shadow, albedo));
+                  (lit * throughHair(gShade, shadow, albedo));
     }
-    if (hasEnvironment(shade)) colour += albedo * skyOnSkin(shade, position_ws, normal, albedo);
-    if (gridTells(shade) && !inside) colour += albedo / kPi * gridLightOnSkin(shade, position_ws);
+    if (hasEnvironment(gShade)) colour += albedo * skyOnSkin(gShade, position_ws, normal, albedo);
+    if (gridTells(gShade) && !inside) colour += albedo / kPi * gridLightOnSkin(gShade, position_ws);
     return colour;
 }
