@@ -2,13 +2,16 @@
 #include "core/software/sorted_hair.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/parallel.h"
 
 namespace hairloom::software {
 namespace {
 
-constexpr std::uint32_t kFragments = HAIRLOOM_FRAGMENTS;
+/// Of a pixel, at most. Four times a GPU's: light that is worked out for those behind is noisy, and these
+/// cost little.
+constexpr std::uint32_t kFragments = 4 * HAIRLOOM_FRAGMENTS;
 constexpr std::uint32_t kNothing = 0x3f800000u;  // the depth 1
 constexpr float kLeastThrough = 1.0f / 512;      // a pixel that lets less through lets nothing through
 constexpr std::uint32_t kMostHalvings = 9u * HAIRLOOM_HALVING_STEPS;
@@ -25,6 +28,19 @@ float3 unpackedLight(std::uint32_t packed) {
     return float3(static_cast<float>(packed & 511u), static_cast<float>((packed >> 9u) & 511u),
                   static_cast<float>((packed >> 18u) & 511u)) *
            scale;
+}
+
+/// As resolve_sorted.comp.hlsl has it.
+float3 lightBehind(const float3& nearer, const float3& farther, float through, float least) {
+    const float ofHalf = max(-0.5f * std::log(max(through, 1e-4f)), 1e-3f);
+    const float depth = std::log(max(through, 1e-6f) / max(least, 1e-6f));
+    const auto channel = [&](float near, float far) {
+        const float fall = clamp(far / max(near, 1e-6f), 1e-3f, 1.0f);
+        const float falls = min(-std::log(fall) / ofHalf, 1.0f);
+        return through * far * std::exp(-0.5f * ofHalf * falls) * (1.0f - std::exp(-depth * (1.0f + falls))) /
+               (1.0f + falls);
+    };
+    return float3(channel(nearer.x, farther.x), channel(nearer.y, farther.y), channel(nearer.z, farther.z));
 }
 
 }  // namespace
@@ -172,7 +188,7 @@ float4 SortedHair::hairOver(const float4& behind, const Found& found, std::size_
     if (covers[1] > 0) {
         const float3 nearer = halves[0] / covers[0];
         const float3 farther = halves[1] / covers[1];
-        light += farther * min(farther / max(nearer, float3(1e-6f)), float3(1.0f)) * (through - least);
+        light += lightBehind(nearer, farther, through, least);
         through = least;
     }
     return float4(light, 1.0f - through) + behind * through;

@@ -1,12 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A pixel's nearest fragments of hair over the mean of its samples, added to the sum of frames. Hair behind the last fragment
-// that was kept is as much dimmer than the farther half of those that were as that is than the nearer.
+// A pixel's nearest fragments of hair over the mean of its samples, added to the sum of frames. Light of hair behind the last
+// fragment that was kept falls with depth as it does from the nearer half of those that were to the farther.
 #include "shaders/render/fragments.hlsli"
 #include "shaders/render/resolve.hlsli"
 
 StructuredBuffer<uint> gDepths : register(t2);
 StructuredBuffer<uint> gFragmentLight : register(t3);
 StructuredBuffer<uint> gCover : register(t4);
+
+// The light of hair that lies behind halves of these mean lights, which let `through` pass; all hair lets `least` pass.
+float3 lightBehind(float3 nearer, float3 farther, float through, float least) {
+    const float3 fall = clamp(farther / max(nearer, 1e-6), 1e-3, 1.0);
+    const float ofHalf = max(-0.5 * log(max(through, 1e-4)), 1e-3);  // optical depth of a half
+    const float depth = log(max(through, 1e-6) / max(least, 1e-6));
+    // Two means of a few hairs are noisy: light falls no faster than hair hides what is behind it.
+    const float3 falls = min(-log(fall) / ofHalf, 1.0);
+    // The integral of farther exp(-falls (u + ofHalf / 2)) exp(-u) over the optical depth u from 0 to depth.
+    return through * farther * exp(-0.5 * ofHalf * falls) * (1.0 - exp(-depth * (1.0 + falls))) / (1.0 + falls);
+}
 
 float4 hairOver(float4 behind, uint pixel) {
     const uint base = pixel * HAIRLOOM_FRAGMENTS;
@@ -25,7 +36,7 @@ float4 hairOver(float4 behind, uint pixel) {
     if (halves[1].w > 0.0) {
         const float3 nearer = halves[0].rgb / halves[0].w;
         const float3 farther = halves[1].rgb / halves[1].w;
-        light += (through - least) * farther * min(farther / max(nearer, 1e-6), 1.0);
+        light += lightBehind(nearer, farther, through, least);
         through = least;
     }
     return float4(light, 1.0 - through) + through * behind;

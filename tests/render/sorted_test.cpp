@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair blended as the nearest fragments of a pixel in their order, against closed forms and many passes.
 
+#include <functional>
+
 #include "core/render/renderer.h"
 #include "tests/render/render_fixture.h"
 
@@ -104,6 +106,33 @@ TEST_F(SortedTest, MoreHairThanIsKeptHidesAsMuch) {
         EXPECT_NEAR(luminanceAt(image, 16, 16, 3), 1 - std::pow(0.9, count), 0.01) << count;
         // A pixel beside it has none: hair of a pixel's width ends within one.
         EXPECT_LT(luminanceAt(image, 16, 18, 3), 0.001f) << count;
+    }
+}
+
+// Light that falls with depth, as it does into hair that is lit from before, falls on behind the last
+// fragment that is kept.
+TEST_F(SortedTest, MoreHairThanIsKeptIsAsDark) {
+    constexpr float kCover = 0.12f;
+    constexpr std::size_t kCount = 60;
+    const auto lightOf = [&](std::size_t count, const std::function<float(std::size_t)>& brightness) {
+        Pile pile(count, kCover);
+        for (std::size_t k = 0; k < count; ++k) pile.colours[k] = Vec3f::Constant(brightness(k));
+        pile.scene.strands[0].colours = pile.colours;
+        RenderOptions how = options(Pile::kSize);
+        how.shadows = Shadows::none;
+        how.transparentBackground = true;
+        return luminanceAt(draw(pile.scene, how).linear, 16, 16, 0);
+    };
+    const float none = lightOf(1, [](std::size_t) { return 0.0f; }) / kCover;
+    const float whole = lightOf(1, [](std::size_t) { return 1.0f; }) / kCover;
+    for (const float fall : {0.0f, 0.03f, 0.08f}) {
+        const auto brightness = [&](std::size_t k) { return std::exp(-fall * static_cast<float>(k)); };
+        float expected = 0, through = 1;
+        for (std::size_t k = 0; k < kCount; ++k) {
+            expected += through * kCover * (none + (whole - none) * brightness(k));
+            through *= 1 - kCover;
+        }
+        EXPECT_NEAR(lightOf(kCount, brightness) / expected, 1, 0.02) << fall;
     }
 }
 
