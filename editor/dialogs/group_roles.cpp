@@ -37,15 +37,16 @@ const RoleWords& wordsOf(GroupRole role) {
 }  // namespace
 
 GroupRoles::GroupRoles(const Preferences& preferences, QWidget* parent)
-    : QWidget(parent), preferences_(preferences), search_(new QLineEdit), list_(new QTreeWidget) {
+    : QWidget(parent),
+      preferences_(preferences),
+      list_(new QTreeWidget),
+      search_(searchBox("headSearch", "Search groups", "Filter groups by name", *list_)) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(6);
-    search_->setObjectName("headSearch");
-    search_->setPlaceholderText("Search groups");
-    search_->setToolTip("Filter groups by name");
     layout->addWidget(search_);
     list_->setObjectName("headGroups");
+    list_->setAccessibleName("Groups and their roles");
     list_->setHeaderLabels({"Group", "Role"});
     list_->headerItem()->setToolTip(
         kRole, "Click to change the role, or press the space bar to change all selected groups");

@@ -42,8 +42,8 @@ class GroupRoles : public QWidget {
     std::vector<QTreeWidgetItem*> selected() const;
 
     const Preferences& preferences_;
-    QLineEdit* search_;
     QTreeWidget* list_;
+    QLineEdit* search_;
     std::vector<QPushButton*> buttons_;
 };
 

@@ -146,6 +146,7 @@ RenderDialog::RenderDialog(Viewport& viewport, Player& player, Tasks& tasks, Mes
     progress_->setObjectName("renderProgress");
     progress_->setRange(0, 1000);
     progress_->setTextVisible(false);
+    progress_->setAccessibleName("Progress of rendering");
     progress_->hide();
     layout->addWidget(progress_);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);

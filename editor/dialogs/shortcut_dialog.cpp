@@ -7,6 +7,8 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "editor/fields/blocks.h"
+
 namespace hairloom::editor {
 namespace {
 
@@ -23,10 +25,8 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(16, 16, 16, 16);
     layout->setSpacing(10);
-    auto* search = new QLineEdit;
-    search->setPlaceholderText("Search actions");
-    search->setClearButtonEnabled(true);
-    search->setToolTip("Show only actions whose name contains this text");
+    auto* search = searchBox("searchShortcuts", "Search actions",
+                             "Show only actions whose name contains this text", *list_);
     layout->addWidget(search);
     list_->setHeaderLabels({"Action", "Shortcut"});
     list_->setAccessibleName("Actions and their shortcuts");
@@ -43,9 +43,10 @@ ShortcutDialog::ShortcutDialog(Actions& actions, QWidget* parent)
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Close);
     auto* reset = buttons->addButton("Reset all", QDialogButtonBox::ResetRole);
     reset->setToolTip("Restore the default shortcut of every action");
-    // Enter would press the first that may be pressed so.
-    reset->setAutoDefault(false);
-    buttons->button(QDialogButtonBox::Close)->setDefault(true);
+    // Return is the list's, which it goes from to an action's keys.
+    for (auto* button : {reset, buttons->button(QDialogButtonBox::Close)}) button->setAutoDefault(false);
+    connect(list_, &QTreeWidget::itemActivated, this,
+            [this](QTreeWidgetItem* item) { list_->itemWidget(item, 1)->setFocus(Qt::TabFocusReason); });
     layout->addWidget(buttons);
     connect(buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
     connect(reset, &QPushButton::clicked, this, [this] {

@@ -4,6 +4,7 @@
 #include <QDialogButtonBox>
 #include <QEvent>
 #include <QHeaderView>
+#include <QKeyEvent>
 #include <QLabel>
 #include <QScrollArea>
 #include <QScrollBar>
@@ -34,6 +35,47 @@ void addCaption(QMenu& menu, const QString& text) {
     // Keys step over it.
     caption->setEnabled(false);
     menu.addAction(caption);
+}
+
+namespace {
+
+class SearchBox : public QLineEdit {
+  public:
+    explicit SearchBox(QTreeWidget& list) : list_(list) {}
+
+  protected:
+    void keyPressEvent(QKeyEvent* event) override {
+        const int key = event->key();
+        if (key != Qt::Key_Return && key != Qt::Key_Enter && key != Qt::Key_Down)
+            return QLineEdit::keyPressEvent(event);
+        goToList();
+    }
+
+  private:
+    void goToList() {
+        QTreeWidgetItem* row = list_.currentItem();
+        if (!row || row->isHidden()) row = nullptr;
+        for (int i = 0; !row && i < list_.topLevelItemCount(); ++i) {
+            if (!list_.topLevelItem(i)->isHidden()) row = list_.topLevelItem(i);
+        }
+        if (!row) return;
+        list_.setCurrentItem(row, 0, QItemSelectionModel::NoUpdate);
+        list_.setFocus(Qt::TabFocusReason);
+    }
+
+    QTreeWidget& list_;
+};
+
+}  // namespace
+
+QLineEdit* searchBox(const char* name, const QString& words, const QString& tip, QTreeWidget& list) {
+    auto* box = new SearchBox(list);
+    box->setObjectName(name);
+    box->setPlaceholderText(words);
+    box->setAccessibleName(words);
+    box->setToolTip(tip);
+    box->setClearButtonEnabled(true);
+    return box;
 }
 
 QPushButton* pushButton(const char* name, const QString& text, const QString& tip,

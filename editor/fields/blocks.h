@@ -5,6 +5,7 @@
 #include <QDialog>
 #include <QFormLayout>
 #include <QLayout>
+#include <QLineEdit>
 #include <QMenu>
 #include <QPushButton>
 #include <QTreeWidget>
@@ -15,6 +16,8 @@
 namespace hairloom::editor {
 
 QWidget* heading(const QString& text);
+/// Words that rows of `list` are looked for by: Return and Down go on to it, and end no dialog.
+QLineEdit* searchBox(const char* name, const QString& words, const QString& tip, QTreeWidget& list);
 /// Does `act` when it is clicked, as long as it lives.
 QPushButton* pushButton(const char* name, const QString& text, const QString& tip, std::function<void()> act);
 /// At the end of `layout`: Cancel, and the dialog's default button, which accepts and which the caller

@@ -12,9 +12,12 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QMainWindow>
+#include <QProgressBar>
+#include <QPushButton>
 #include <QScrollBar>
 #include <QSlider>
 #include <QTextDocumentFragment>
+#include <QToolButton>
 
 namespace hairloom::editor {
 namespace {
@@ -43,11 +46,12 @@ bool ownsKey(const QObject& object, const QKeyEvent& key) {
     }
 }
 
-/// Dialogs press their default button by themselves.
+/// In dialogs, boxes that are ticked leave Return to the default button.
 QAbstractButton* pressedByReturn(QObject& object, const QKeyEvent& key) {
     if (key.key() != Qt::Key_Return && key.key() != Qt::Key_Enter) return nullptr;
     auto* button = qobject_cast<QAbstractButton*>(&object);
-    return button && !qobject_cast<QDialog*>(button->window()) ? button : nullptr;
+    if (!button || !qobject_cast<QDialog*>(button->window())) return button;
+    return qobject_cast<QPushButton*>(button) || qobject_cast<QToolButton*>(button) ? button : nullptr;
 }
 
 /// One that people type words in beside the view, and no part of another control.
@@ -59,6 +63,15 @@ QLineEdit* wordsBesideTheView(QObject& object) {
                         qobject_cast<const QComboBox*>(parent) ||
                         qobject_cast<const QAbstractItemView*>(parent->parentWidget());
     return isPart ? nullptr : edit;
+}
+
+/// Keys go on to controls in rows that are out of sight.
+void showRowOf(QWidget& control) {
+    for (QWidget* widget = &control; widget->parentWidget(); widget = widget->parentWidget()) {
+        auto* list = qobject_cast<QAbstractItemView*>(widget->parentWidget()->parentWidget());
+        if (list && list->viewport() == widget->parentWidget())
+            return list->scrollTo(list->indexAt(widget->geometry().center()));
+    }
 }
 
 constexpr const char* kWordsBefore = "wordsBefore";
@@ -102,7 +115,9 @@ bool InputRules::eventFilter(QObject* object, QEvent* event) {
             if (auto* widget = qobject_cast<QWidget*>(object)) {
                 if (changesByWheel(*widget) && widget->focusPolicy() == Qt::WheelFocus)
                     widget->setFocusPolicy(Qt::StrongFocus);
-                if (widget->focusPolicy() != Qt::NoFocus && widget->accessibleName().isEmpty())
+                const bool isSpoken =
+                    widget->focusPolicy() != Qt::NoFocus || qobject_cast<const QProgressBar*>(widget);
+                if (isSpoken && widget->accessibleName().isEmpty())
                     widget->setAccessibleName(spokenName(*widget));
             }
             break;
@@ -120,6 +135,9 @@ bool InputRules::eventFilter(QObject* object, QEvent* event) {
             break;
         case QEvent::FocusIn:
             if (QLineEdit* edit = wordsBesideTheView(*object)) edit->setProperty(kWordsBefore, edit->text());
+            if (auto* widget = qobject_cast<QWidget*>(object);
+                widget && static_cast<QFocusEvent*>(event)->reason() != Qt::MouseFocusReason)
+                showRowOf(*widget);
             break;
         case QEvent::KeyPress:
             // The keys of tools are theirs again once words are given up, as with numbers.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editor/viewport/strand_preview.h"
 
+#include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
 #include <algorithm>
@@ -15,7 +16,9 @@ constexpr std::size_t kMaxStrands = 3000;
 
 StrandPreview::StrandPreview(QWidget* parent) : QWidget(parent) {
     setMinimumSize(320, 320);
-    setToolTip("Drag to turn, wheel to zoom");
+    setFocusPolicy(Qt::StrongFocus);
+    setAccessibleName("Preview");
+    setToolTip("Drag or arrow keys to turn, wheel or + and − to zoom");
 }
 
 void StrandPreview::show(const Groom& strands, std::shared_ptr<const ScalpMesh> head,
@@ -76,6 +79,10 @@ void StrandPreview::paintEvent(QPaintEvent*) {
     const std::size_t apart = std::max<std::size_t>(1, order.size() / kMostMarks);
     for (std::size_t i = 0; marksEnds_ && i < order.size(); i += apart) drawEnds(painter, order[i].second);
     drawSpheres(painter);
+    if (!hasFocus()) return;
+    painter.setPen(QPen(palette().color(QPalette::Highlight), 2));
+    painter.setBrush(Qt::NoBrush);
+    painter.drawRect(rect().adjusted(1, 1, -1, -1));
 }
 
 void StrandPreview::drawEnds(QPainter& painter, std::size_t strand) const {
@@ -129,6 +136,34 @@ void StrandPreview::mousePressEvent(QMouseEvent* event) {
 void StrandPreview::mouseMoveEvent(QMouseEvent* event) {
     camera_.turn(event->position() - last_px_);
     last_px_ = event->position();
+    update();
+}
+void StrandPreview::keyPressEvent(QKeyEvent* event) {
+    constexpr double kTurn_px = 40;
+    constexpr float kZoom = 1.2f;
+    switch (event->key()) {
+        case Qt::Key_Left:
+            camera_.turn({-kTurn_px, 0});
+            break;
+        case Qt::Key_Right:
+            camera_.turn({kTurn_px, 0});
+            break;
+        case Qt::Key_Up:
+            camera_.turn({0, -kTurn_px});
+            break;
+        case Qt::Key_Down:
+            camera_.turn({0, kTurn_px});
+            break;
+        case Qt::Key_Plus:
+        case Qt::Key_Equal:
+            camera_.zoom(kZoom);
+            break;
+        case Qt::Key_Minus:
+            camera_.zoom(1 / kZoom);
+            break;
+        default:
+            return QWidget::keyPressEvent(event);
+    }
     update();
 }
 void StrandPreview::wheelEvent(QWheelEvent* event) {

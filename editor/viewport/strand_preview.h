@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Strands and a head as lines, to be turned with the mouse: small, at once, and without the graphics device.
+// Strands and a head as lines, to be turned with mouse and arrows: small, at once, and without the graphics
+// device.
 
 #include <QWidget>
 
@@ -27,6 +28,7 @@ class StrandPreview : public QWidget {
     void paintEvent(QPaintEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
+    void keyPressEvent(QKeyEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
 

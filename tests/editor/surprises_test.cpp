@@ -23,81 +23,13 @@
 #include "editor/dialogs/import_dialog.h"
 #include "editor/dialogs/preferences_dialog.h"
 #include "editor/dialogs/shortcut_dialog.h"
-#include "tests/editor/nothing_clipped.h"
-#include "tests/editor/wheel.h"
-#include "tests/editor/window_fixture.h"
+#include "tests/editor/controls_fixture.h"
 
 namespace hairloom::editor {
 namespace {
 
-class SurprisesTest : public WindowTest {
+class SurprisesTest : public ControlsTest {
   protected:
-    void SetUp() override {
-        WindowTest::SetUp();
-        window->activateWindow();
-        ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
-    }
-    /// What the controls within show.
-    static QStringList valuesIn(const QWidget& widget) {
-        QStringList values;
-        for (const auto* box : widget.findChildren<QComboBox*>()) values += box->currentText();
-        for (const auto* spin : widget.findChildren<QAbstractSpinBox*>()) values += spin->text();
-        for (const auto* slider : widget.findChildren<QAbstractSlider*>()) {
-            if (!qobject_cast<const QScrollBar*>(slider)) values += QString::number(slider->value());
-        }
-        for (const auto* button : widget.findChildren<QAbstractButton*>())
-            values += QString::number(button->isChecked());
-        for (const auto* list : widget.findChildren<QListWidget*>())
-            values += QString::number(list->currentRow());
-        return values;
-    }
-    static void expectWheelChangesNothingIn(QWidget& widget, const QString& name) {
-        const QStringList before = valuesIn(widget);
-        for (QWidget* child : widget.findChildren<QWidget*>()) {
-            if (!child->isVisible() || child->hasFocus() || qobject_cast<QScrollBar*>(child) ||
-                qobject_cast<QTabBar*>(child))
-                continue;
-            turnWheel(*child, 1);
-            turnWheel(*child, 1);
-        }
-        EXPECT_EQ(valuesIn(widget), before) << name.toStdString();
-    }
-    static bool isControl(const QWidget& widget) {
-        return qobject_cast<const QAbstractButton*>(&widget) ||
-               qobject_cast<const QAbstractSpinBox*>(&widget) || qobject_cast<const QComboBox*>(&widget) ||
-               (qobject_cast<const QAbstractItemView*>(&widget) &&
-                !qobject_cast<const QHeaderView*>(&widget));
-    }
-    /// That are there to be used now.
-    static std::vector<QWidget*> controlsOf(const QWidget& widget) {
-        std::vector<QWidget*> controls;
-        for (QWidget* child : widget.findChildren<QWidget*>()) {
-            if (isControl(*child) && child->isVisible() && !child->objectName().startsWith("qt_"))
-                controls.push_back(child);
-        }
-        return controls;
-    }
-    static std::string nameOf(const QString& place, const QWidget& control) {
-        return place.toStdString() + ": " + control.objectName().toStdString() + " " +
-               control.metaObject()->className();
-    }
-    /// Dialogs that have fields, one after the other, shown.
-    void inEachDialog(const std::function<void(QDialog&, const QString&)>& look) {
-        const auto show = [&](QDialog& dialog, const QString& name) {
-            dialog.show();
-            ASSERT_TRUE(QTest::qWaitForWindowExposed(&dialog));
-            look(dialog, name);
-        };
-        PreferencesDialog preferences(parts().preferences, window.get());
-        show(preferences, "preferences");
-        preferences.close();
-        ShortcutDialog shortcuts(window->actions(), window.get());
-        show(shortcuts, "shortcuts");
-        shortcuts.close();
-        ExportDialog exports(document(), parts().preferences, parts().tasks, parts().messages, parts().player,
-                             window.get());
-        show(exports, "export");
-    }
     /// What scrolls up and down is not cut at its right side, nor are columns of tables.
     static void expectAllAcross(QAbstractScrollArea& area, const std::string& name) {
         const auto isCut = [&] {
@@ -185,25 +117,6 @@ TEST_F(SurprisesTest, FocusIsSeenOnEveryControl) {
         }
     });
     EXPECT_GT(seen, 60u);
-}
-
-TEST_F(SurprisesTest, DialogsAreReachedByKeyboardAndSpoken) {
-    openSampleHair("short");
-    std::size_t named = 0;
-    inEachDialog([&](QDialog& dialog, const QString& name) {
-        for (QWidget* control : controlsOf(dialog)) {
-            const std::string what = nameOf(name, *control);
-            EXPECT_TRUE(control->focusPolicy() & Qt::TabFocus) << what;
-            QAccessibleInterface* spoken = QAccessible::queryAccessibleInterface(control);
-            ASSERT_TRUE(spoken) << what;
-            EXPECT_FALSE(spoken->text(QAccessible::Name).isEmpty()) << what;
-            ++named;
-        }
-        expectNothingClipped(dialog, name);
-        EXPECT_LE(dialog.width(), 1280) << name.toStdString();
-        EXPECT_LE(dialog.height(), 800) << name.toStdString();
-    });
-    EXPECT_GT(named, 15u);
 }
 
 TEST_F(SurprisesTest, SpacePressesButtonsAndReturnChoosesOnLists) {
