@@ -178,6 +178,7 @@ class PresetList : public QWidget {
     QString cacheFile(const Look& look) const {
         QByteArray what = QByteArray::fromStdString(toJson(materialOf(look)).dump());
         what += preferences_.theme() == Theme::Dark ? "dark" : "light";
+        what += QByteArray::number(kTressVersion);
         const QByteArray hash = QCryptographicHash::hash(what, QCryptographicHash::Sha1).toHex();
         return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/looks/" +
                QString::fromLatin1(hash) + ".png";

@@ -10,6 +10,8 @@
 #include <QPushButton>
 #include <algorithm>
 #include <cstdlib>
+#include <map>
+#include <string_view>
 
 #include "core/documents/look_presets.h"
 #include "core/editing/settings_commands.h"
@@ -401,6 +403,48 @@ TEST_F(LookPictureTest, ThumbnailsAreDrawnWhenNothingElseIs) {
     EXPECT_EQ(thumbnail.size(), QSize(64, 64));
     EXPECT_LT(qGray(thumbnail.pixel(32, 32)), 90) << "black hair";
     EXPECT_GT(qGray(thumbnail.pixel(1, 32)), 150) << "beside it";
+}
+
+TEST_F(LookPictureTest, ThumbnailsShowTheColourOfTheirLook) {
+    constexpr int kSide = 64;
+    std::map<QString, QImage> made;
+    QObject::connect(&viewport(), &Viewport::sidePictureReady, window.get(),
+                     [&](const QString& name, const QImage& picture) { made[name] = picture; });
+    for (const ShadingModel model : {ShadingModel::kajiya, ShadingModel::marschner}) {
+        double last = -6;
+        std::vector<QImage> earlier;
+        for (const char* look : {"black", "brown", "copper", "blond", "white"}) {  // ever brighter
+            HairMaterial material;
+            applyLook(*findLook(look), material);
+            material.shadingModel = model;
+            const QString name = QString("%1 of model %2").arg(look).arg(static_cast<int>(model));
+            viewport().requestSidePicture(name, tressPicture(material, kSide, Vec3f::Zero()));
+            ASSERT_TRUE(QTest::qWaitFor([&] { return made.contains(name); }, 60'000));
+            const QImage picture = made[name];
+            const auto meanOf = [](const auto& value) {
+                double sum = 0;
+                for (int y = kSide / 4; y < 3 * kSide / 4; ++y)  // hair and nothing else
+                    for (int x = 3 * kSide / 8; x < 5 * kSide / 8; ++x) sum += value(x, y);
+                return sum / (kSide / 2 * (kSide / 4));
+            };
+            const double bright = meanOf([&](int x, int y) { return qGray(picture.pixel(x, y)); });
+            const double blown =
+                meanOf([&](int x, int y) { return qGray(picture.pixel(x, y)) > 252 ? 1 : 0; });
+            EXPECT_GT(bright, last + 6) << name.toStdString();
+            EXPECT_GT(bright, std::string_view(look) == "black" ? 2 : 30) << name.toStdString();
+            EXPECT_LT(blown, 0.1) << name.toStdString();
+            for (const QImage& other : earlier) {
+                const double apart = meanOf([&](int x, int y) {
+                    const QColor a = picture.pixelColor(x, y), b = other.pixelColor(x, y);
+                    return std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) +
+                           std::abs(a.blue() - b.blue());
+                });
+                EXPECT_GT(apart, 24) << name.toStdString() << " looks like another";
+            }
+            last = bright;
+            earlier.push_back(picture);
+        }
+    }
 }
 
 TEST_F(LookPictureTest, ThumbnailsAreOfTheTheme) {
