@@ -65,15 +65,6 @@ QLineEdit* wordsBesideTheView(QObject& object) {
     return isPart ? nullptr : edit;
 }
 
-/// Keys go on to controls in rows that are out of sight.
-void showRowOf(QWidget& control) {
-    for (QWidget* widget = &control; widget->parentWidget(); widget = widget->parentWidget()) {
-        auto* list = qobject_cast<QAbstractItemView*>(widget->parentWidget()->parentWidget());
-        if (list && list->viewport() == widget->parentWidget())
-            return list->scrollTo(list->indexAt(widget->geometry().center()));
-    }
-}
-
 constexpr const char* kWordsBefore = "wordsBefore";
 
 QString labelFor(const QWidget& control) {
@@ -135,9 +126,6 @@ bool InputRules::eventFilter(QObject* object, QEvent* event) {
             break;
         case QEvent::FocusIn:
             if (QLineEdit* edit = wordsBesideTheView(*object)) edit->setProperty(kWordsBefore, edit->text());
-            if (auto* widget = qobject_cast<QWidget*>(object);
-                widget && static_cast<QFocusEvent*>(event)->reason() != Qt::MouseFocusReason)
-                showRowOf(*widget);
             break;
         case QEvent::KeyPress:
             // The keys of tools are theirs again once words are given up, as with numbers.

@@ -12,7 +12,6 @@ namespace hairloom::editor {
 ///   focus;
 /// - Space and Return press the button that has the focus, in dialogs, too, whatever their default button is;
 ///   Space, Delete, Home and End are a list's own, rather than shortcuts of the window;
-/// - a row whose control gets the focus by a key comes into sight;
 /// - a control that can have the focus, and a bar of progress, has a name for screen readers: that of its
 ///   label, else what its tooltip begins with.
 class InputRules : public QObject {
