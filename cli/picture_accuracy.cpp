@@ -42,7 +42,8 @@ void addPictureAccuracyOptions(CLI::App& job, PictureAccuracyOptions& options) {
     };
     add("--shading", options.shading, "Shading model (default: the project's)")
         ->check(CLI::IsMember(namesOf(kShadingModels)));
-    add("--scatter", options.scatter, "Light scattered by other hairs (default: that of the view, or volume)")
+    add("--scatter", options.scatter,
+        "Light scattered by other hairs (default: that of the view, or volume). Not for kajiya")
         ->check(CLI::IsMember(namesOf(kScatterings)));
     add("--size", options.size, "Image size WxH in pixels (default: that of the view, or 640x640)");
     add("--passes", options.frames, "Number of frames averaged in the compared images")

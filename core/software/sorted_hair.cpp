@@ -9,8 +9,7 @@
 namespace hairloom::software {
 namespace {
 
-/// Of a pixel, at most. Four times a GPU's: light that is worked out for those behind is noisy, and these
-/// cost little.
+/// Of a pixel, at most. Four times a GPU's, because light that is worked out for those behind is noisy.
 constexpr std::uint32_t kFragments = 4 * HAIRLOOM_FRAGMENTS;
 constexpr std::uint32_t kNothing = 0x3f800000u;  // the depth 1
 constexpr float kLeastThrough = 1.0f / 512;      // a pixel that lets less through lets nothing through
@@ -132,6 +131,14 @@ void SortedHair::findIn(std::size_t tile, std::span<const std::uint32_t> nearest
                                  last = max(last, fragments[p * kFragments + kFragments - 1].depth);
                              farthest = min(farthest, last);
                          });
+    // What those before it hide needs neither light nor room.
+    for (std::size_t p = 0; p < pixels; ++p) {
+        const Fragment* const kept = fragments.data() + p * kFragments;
+        float through = 1;
+        std::uint8_t shown = 0;
+        while (shown < counts[p] && through >= kLeastThrough) through *= 1.0f - kept[shown++].cover;
+        counts[p] = shown;
+    }
     result.starts.assign(pixels + 1, 0);
     std::size_t all = 0;
     for (std::size_t p = 0; p < pixels; ++p) {

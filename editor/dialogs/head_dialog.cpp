@@ -100,6 +100,7 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     side->addWidget(fit_);
     open_ = acceptOrCancel(*this, *side, "Open", "Open the head as shown");
     open_->setObjectName("headOpen");
+    setTabOrder(open_, view_);
     connect(unit_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
     connect(up_, &QButtonGroup::idClicked, this, &HeadDialog::refresh);
     connect(groups_, &GroupRoles::changed, this, &HeadDialog::refresh);

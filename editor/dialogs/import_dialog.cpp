@@ -80,6 +80,7 @@ ImportDialog::ImportDialog(QtDocument& document, Tasks& tasks, const QString& pa
     side->addWidget(summary_, 1);
     take_ = acceptOrCancel(*this, *side, "Import",
                            "Import the strands as shown. On a head, they are bound to its scalp");
+    setTabOrder(take_, view_);
     connect(unit_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(up_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);
     connect(order_, &QComboBox::currentIndexChanged, this, &ImportDialog::read);

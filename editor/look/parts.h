@@ -14,8 +14,7 @@
 namespace hairloom::editor {
 
 /// Looks as thumbnails; a click takes one, and the document's can be kept under a name.
-QWidget* makePresetList(QtDocument& document, const Preferences& preferences, Messages& messages,
-                        Viewport& viewport);
+QWidget* makePresetList(QtDocument& document, Messages& messages, Viewport& viewport);
 /// Curves and tables of the shading models, drawn anew while a control moves.
 QWidget* makeShadingChart(QtDocument& document, const Preferences& preferences);
 /// A look to compare with, left of a line in the viewport.

@@ -17,7 +17,6 @@
 #include "editor/fields/colour.h"
 #include "editor/look/parts.h"
 #include "editor/look/tress.h"
-#include "editor/style/theme.h"
 
 namespace hairloom::editor {
 namespace {
@@ -48,12 +47,8 @@ QPixmap swatch(const HairMaterial& material) {
 
 class PresetList : public QWidget {
   public:
-    PresetList(QtDocument& document, const Preferences& preferences, Messages& messages, Viewport& viewport)
-        : document_(document),
-          preferences_(preferences),
-          messages_(messages),
-          viewport_(viewport),
-          list_(new QListWidget) {
+    PresetList(QtDocument& document, Messages& messages, Viewport& viewport)
+        : document_(document), messages_(messages), viewport_(viewport), list_(new QListWidget) {
         auto* layout = new QVBoxLayout(this);
         layout->setContentsMargins(0, 0, 0, 0);
         layout->setSpacing(6);
@@ -91,7 +86,6 @@ class PresetList : public QWidget {
             for (std::size_t i = 0; i < looks_.size(); ++i) showSwatch(i);
             soon_.start();
         };
-        connect(&preferences_, &Preferences::changed, this, askAnew);
         connect(&document_, &QtDocument::changed, this, [askAnew](editing::Part parts) {
             if (contains(parts, editing::Part::Material)) askAnew();
         });
@@ -163,10 +157,8 @@ class PresetList : public QWidget {
         askForPictures();
     }
 
-    /// What all thumbnails depend on: the theme, and the model that draws those of looks that have none.
-    std::pair<Theme, ShadingModel> drawnWith() const {
-        return {preferences_.theme(), document_.groom().material.shadingModel};
-    }
+    /// Draws the thumbnails of looks that have no model of their own.
+    ShadingModel drawnWith() const { return document_.groom().material.shadingModel; }
     /// As it would look on the hair.
     HairMaterial materialOf(const Look& look) const {
         HairMaterial material = look.material;
@@ -174,10 +166,9 @@ class PresetList : public QWidget {
         return material;
     }
 
-    /// Drawn once for a material and a theme, then kept on disk.
+    /// Drawn once for a material, then kept on disk.
     QString cacheFile(const Look& look) const {
         QByteArray what = QByteArray::fromStdString(toJson(materialOf(look)).dump());
-        what += preferences_.theme() == Theme::Dark ? "dark" : "light";
         what += QByteArray::number(kTressVersion);
         const QByteArray hash = QCryptographicHash::hash(what, QCryptographicHash::Sha1).toHex();
         return QStandardPaths::writableLocation(QStandardPaths::CacheLocation) + "/looks/" +
@@ -186,20 +177,18 @@ class PresetList : public QWidget {
 
     void askForPictures() {
         shownWith_ = drawnWith();
-        const Vec3f background = toLinear(themeColours(preferences_.theme()).field);
         for (std::size_t i = 0; i < looks_.size(); ++i) {
             const QString file = cacheFile(looks_[i]);
             const QPixmap kept(file);
             if (!kept.isNull()) {
                 show(i, kept);
             } else {
-                viewport_.requestSidePicture(kPrefix + file,
-                                             tressPicture(materialOf(looks_[i]), kPicture, background));
+                viewport_.requestSidePicture(kPrefix + file, tressPicture(materialOf(looks_[i]), kPicture));
             }
         }
     }
 
-    /// One that was asked for before the theme changed is of no look any more.
+    /// One that was asked for before the model changed is of no look any more.
     void takePicture(const QString& name, const QImage& picture) {
         for (std::size_t i = 0; i < looks_.size(); ++i) {
             const QString file = cacheFile(looks_[i]);
@@ -224,20 +213,18 @@ class PresetList : public QWidget {
     }
 
     QtDocument& document_;
-    const Preferences& preferences_;
     Messages& messages_;
     Viewport& viewport_;
     QListWidget* list_;
     std::vector<Look> looks_;
     QTimer soon_;
-    std::optional<std::pair<Theme, ShadingModel>> shownWith_;  ///< nothing: pictures are to be asked for
+    std::optional<ShadingModel> shownWith_;  ///< nothing: pictures are to be asked for
 };
 
 }  // namespace
 
-QWidget* makePresetList(QtDocument& document, const Preferences& preferences, Messages& messages,
-                        Viewport& viewport) {
-    return new PresetList(document, preferences, messages, viewport);
+QWidget* makePresetList(QtDocument& document, Messages& messages, Viewport& viewport) {
+    return new PresetList(document, messages, viewport);
 }
 
 }  // namespace hairloom::editor

@@ -62,7 +62,7 @@ float brightness(const HairMaterial& material) {
 
 }  // namespace
 
-PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px, const Vec3f& background) {
+PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px) {
     static const Groom lock = tress();
     Groom groom = lock;
     groom.material = material;
@@ -75,6 +75,7 @@ PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px,
     request.camera.eye_ws = Vec3f(0.02f, 0.02f, 0.5f);
     request.camera.verticalFov = 11;
     request.width = request.height = side_px;
+    request.seeThrough = true;
     request.quality.frames = 4;
     // So few photons as a small picture gets leave stains on it.
     request.quality.scattering = render::Scattering::dual;
@@ -86,7 +87,6 @@ PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px,
         request.environment = kSky;
         request.exposure *= std::exp2(dark);
     }
-    request.background = background / request.exposure;
     return request;
 }
 

@@ -8,10 +8,10 @@
 namespace hairloom::editor {
 
 /// Goes up with each change of the picture, so that none is shown that was kept of an older one.
-inline constexpr int kTressVersion = 2;
+inline constexpr int kTressVersion = 3;
 
-/// A wavy lock with that material, `side_px` pixels square, before `background` (linear RGB, as it is shown).
-/// Dark looks get more light than bright ones, so that each shows its colour.
-PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px, const Vec3f& background);
+/// A wavy lock with that material, `side_px` pixels square, transparent around it. Dark looks get more light
+/// than bright ones, so that each shows its colour.
+PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px);
 
 }  // namespace hairloom::editor

@@ -94,8 +94,7 @@ class LookPanel : public QWidget {
           layout_(new QVBoxLayout(this)) {
         layout_->setContentsMargins(0, 0, 0, 0);
         layout_->setSpacing(8);
-        layout_->addWidget(
-            collapsible("Presets", makePresetList(document_, preferences_, messages_, viewport_)));
+        layout_->addWidget(collapsible("Presets", makePresetList(document_, messages_, viewport_)));
         layout_->addWidget(collapsible("Compare", makeCompareBar(document_, viewport_)));
         layout_->addWidget(form(pick(materialFields(), {kModel})));
         makeGroups();

@@ -20,6 +20,7 @@
 #include <QTabBar>
 #include <QTextEdit>
 #include <QTreeWidget>
+#include <functional>
 
 #include "core/documents/hair_export.h"
 #include "core/groom/groom_diff.h"

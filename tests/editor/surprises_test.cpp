@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What must never surprise somebody who uses the window, of every control of a kind wherever it is.
 #include <QAbstractItemView>
-#include <QAbstractSlider>
-#include <QAccessible>
-#include <QCheckBox>
 #include <QComboBox>
 #include <QDir>
 #include <QDoubleSpinBox>
@@ -14,15 +11,12 @@
 #include <QScrollArea>
 #include <QScrollBar>
 #include <QSpinBox>
-#include <QTabBar>
 #include <QTreeWidget>
 
 #include "core/editing/stack_commands.h"
 #include "core/operations/stack.h"
 #include "editor/dialogs/export_dialog.h"
 #include "editor/dialogs/import_dialog.h"
-#include "editor/dialogs/preferences_dialog.h"
-#include "editor/dialogs/shortcut_dialog.h"
 #include "tests/editor/controls_fixture.h"
 
 namespace hairloom::editor {
@@ -222,7 +216,7 @@ TEST_F(SurprisesTest, NoOperatorMakesItsPanelScrollSideways) {
         for (QAbstractScrollArea* area : window->panel("operators")->findChildren<QAbstractScrollArea*>()) {
             if (!area->isVisible()) continue;
             // Settings that have just come are laid out in steps.
-            EXPECT_TRUE(QTest::qWaitFor([&] { return !area->horizontalScrollBar()->isVisible(); }, 2000))
+            EXPECT_TRUE(QTest::qWaitFor([&] { return !area->horizontalScrollBar()->isVisible(); }, kPatience))
                 << all[i].op << ", " << area->objectName().toStdString() << ": " << area->width() << " for "
                 << area->findChild<QWidget*>()->minimumSizeHint().width();
             expectAllAcross(*area, all[i].op);

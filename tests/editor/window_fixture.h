@@ -31,7 +31,7 @@ namespace hairloom::editor {
 
 /// Milliseconds to wait for what a test checks: the time limit of ctest ends a test that never gets there,
 /// not a machine that is busy or compiles shaders.
-constexpr int kPatience = 800'000;
+constexpr int kPatience = 400'000;
 
 class WindowTest : public testing::Test {
   protected:

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hair blended as the nearest fragments of a pixel in their order, against closed forms and many passes.
 
-#include <functional>
-
 #include "core/render/renderer.h"
-#include "tests/render/render_fixture.h"
+#include "tests/render/pile.h"
 
 namespace hairloom::render {
 namespace {
@@ -28,37 +26,6 @@ class SortedTest : public RenderTest {
         return picture ? std::move(*picture) : Picture();
     }
 };
-
-/// Hairs across the view behind each other, each of its own colour, `cover` of a pixel wide, through pixels'
-/// middles.
-struct Pile {
-    static constexpr std::uint32_t kSize = 33;
-    TestStrands strands;
-    std::vector<Vec3f> colours;
-    RenderScene scene;
-
-    Pile(std::size_t count, float cover, bool backwards = false) {
-        scene.camera.eye_ws = {0, 0, 1};
-        scene.camera.target_ws = Vec3f::Zero();
-        const float pixel = 2 * std::tan(radians(scene.camera.verticalFov) / 2) / kSize;
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t k = backwards ? count - 1 - i : i;
-            const float z = -0.002f * static_cast<float>(k);
-            strands.add({Vec3f(-0.2f, 0, z), Vec3f(0, 0, z), Vec3f(0.2f, 0, z)},
-                        0.5f * cover * pixel * (1 - z));
-            colours.push_back({k % 3 == 0 ? 1.0f : 0.1f, k % 3 == 1 ? 1.0f : 0.1f, k % 3 == 2 ? 1.0f : 0.1f});
-        }
-        RenderStrands view = strands.view();
-        view.colours = colours;
-        view.material.variation = view.material.tipScale = 0;
-        scene.strands = {view};
-        scene.background = Vec3f(0.2f, 0.2f, 0.2f);
-    }
-};
-
-float luminanceAt(const LinearImage& image, std::size_t x, std::size_t y, std::size_t channel) {
-    return image.rgba[4 * (y * Pile::kSize + x) + channel];
-}
 
 // In front of each other, light of single hairs and what they let through are those of their product.
 TEST_F(SortedTest, HairIsBlendedInItsOrder) {
@@ -112,28 +79,9 @@ TEST_F(SortedTest, MoreHairThanIsKeptHidesAsMuch) {
 // Light that falls with depth, as it does into hair that is lit from before, falls on behind the last
 // fragment that is kept.
 TEST_F(SortedTest, MoreHairThanIsKeptIsAsDark) {
-    constexpr float kCover = 0.12f;
-    constexpr std::size_t kCount = 60;
-    const auto lightOf = [&](std::size_t count, const std::function<float(std::size_t)>& brightness) {
-        Pile pile(count, kCover);
-        for (std::size_t k = 0; k < count; ++k) pile.colours[k] = Vec3f::Constant(brightness(k));
-        pile.scene.strands[0].colours = pile.colours;
-        RenderOptions how = options(Pile::kSize);
-        how.shadows = Shadows::none;
-        how.transparentBackground = true;
-        return luminanceAt(draw(pile.scene, how).linear, 16, 16, 0);
-    };
-    const float none = lightOf(1, [](std::size_t) { return 0.0f; }) / kCover;
-    const float whole = lightOf(1, [](std::size_t) { return 1.0f; }) / kCover;
-    for (const float fall : {0.0f, 0.03f, 0.08f}) {
-        const auto brightness = [&](std::size_t k) { return std::exp(-fall * static_cast<float>(k)); };
-        float expected = 0, through = 1;
-        for (std::size_t k = 0; k < kCount; ++k) {
-            expected += through * kCover * (none + (whole - none) * brightness(k));
-            through *= 1 - kCover;
-        }
-        EXPECT_NEAR(lightOf(kCount, brightness) / expected, 1, 0.02) << fall;
-    }
+    expectDeepHairIsAsDark(
+        options(Pile::kSize), 0.12f,
+        [this](const RenderScene& scene, const RenderOptions& how) { return draw(scene, how).linear; });
 }
 
 TEST_F(SortedTest, OneFrameIsNearManyPasses) {

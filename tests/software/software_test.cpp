@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/render/flip.h"
 #include "core/render/renderer.h"
+#include "tests/render/pile.h"
 #include "tests/render/render_fixture.h"
 
 namespace hairloom::render {
@@ -154,6 +155,12 @@ TEST_F(SoftwareTest, OneHairCoversWhatItIsWide) {
         how.transparentBackground = true;
         EXPECT_NEAR(coverage(draw(scene, how).linear), width / kSize, 0.02f * width / kSize) << width;
     }
+}
+
+TEST_F(SoftwareTest, MoreHairThanIsKeptIsAsDark) {
+    expectDeepHairIsAsDark(
+        options(Pile::kSize), 0.03f,
+        [this](const RenderScene& scene, const RenderOptions& how) { return draw(scene, how).linear; });
 }
 
 TEST_F(SoftwareTest, HairThatCannotBeSeenIsNotDrawn) {
