@@ -15,7 +15,7 @@ struct PictureAccuracyOptions {
     bool wanted = false;  ///< --picture
     std::string shading;  ///< empty: the project's
     std::string scatter;  ///< of other hairs' light; empty: the view's, else volume
-    std::string size;  ///< WxH; empty: the view's, else 640x640
+    std::string size;     ///< WxH; empty: the view's, else 640x640
     std::uint32_t frames = 8;
     std::optional<std::size_t> hairs;     ///< 0: all; else as the device suits
     std::optional<std::uint32_t> device;  ///< by its index in `devices`; else the best
