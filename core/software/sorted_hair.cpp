@@ -131,17 +131,15 @@ void SortedHair::findIn(std::size_t tile, std::span<const std::uint32_t> nearest
                                  last = max(last, fragments[p * kFragments + kFragments - 1].depth);
                              farthest = min(farthest, last);
                          });
-    // What those before it hide needs neither light nor room.
+    result.starts.assign(pixels + 1, 0);
+    std::size_t all = 0;
     for (std::size_t p = 0; p < pixels; ++p) {
+        // What those before it hide needs neither light nor room.
         const Fragment* const kept = fragments.data() + p * kFragments;
         float through = 1;
         std::uint8_t shown = 0;
         while (shown < counts[p] && through >= kLeastThrough) through *= 1.0f - kept[shown++].cover;
         counts[p] = shown;
-    }
-    result.starts.assign(pixels + 1, 0);
-    std::size_t all = 0;
-    for (std::size_t p = 0; p < pixels; ++p) {
         result.starts[p] = static_cast<std::uint16_t>(all);
         all += counts[p];
     }

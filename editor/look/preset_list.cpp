@@ -162,7 +162,7 @@ class PresetList : public QWidget {
     /// As it would look on the hair.
     HairMaterial materialOf(const Look& look) const {
         HairMaterial material = look.material;
-        if (look.preset) material.shadingModel = document_.groom().material.shadingModel;
+        if (look.preset) material.shadingModel = drawnWith();
         return material;
     }
 

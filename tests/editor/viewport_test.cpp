@@ -459,14 +459,6 @@ TEST_F(ViewportTest, PlayingMovesTheHairAndResettingRestoresIt) {
 TEST_F(ViewportTest, SettingsTakeEffectWhileItPlays) {
     openSampleHair("short");
     trigger("play.toggle");
-    const auto played = [this](double seconds) {
-        return QTest::qWaitFor(
-            [&] {
-                const auto& f = parts().player.frame();
-                return f && f->time > seconds;
-            },
-            kPatience);
-    };
     ASSERT_TRUE(played(0.05));
     const auto windIsOn = [this] {
         for (const EffectReport& effect : parts().player.frame()->stats.effects) {

@@ -102,11 +102,12 @@ TEST_F(WalkTest, FromAnEmptyWindowToAnExportedMovingHairstyle) {
     find<QPushButton>("sphereFit")->click();
     finishWork();
     ASSERT_FALSE(groom().spheres.empty());
-    // Wind, and let it blow.
+    // As few hairs as a software device draws while they move.
     drawQuickly();
     Groom thinner = groom();
     thinner.interpolation.followPerGuide = 2;
     change("Fewer follow hairs", thinner);
+    // Wind, and let it blow.
     trigger("tool.wind");
     const QPoint centre = at(viewport().camera().target_ws());
     drag({centre, centre + QPoint(70, 0), centre + QPoint(110, 0)});

@@ -29,8 +29,7 @@
 
 namespace hairloom::editor {
 
-/// Milliseconds to wait for what a test checks: the time limit of ctest ends a test that never gets there,
-/// not a machine that is busy or compiles shaders.
+/// Milliseconds to wait for what a test checks: longer than a machine takes that is busy or compiles shaders.
 constexpr int kPatience = 400'000;
 
 class WindowTest : public testing::Test {
