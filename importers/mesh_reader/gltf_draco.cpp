@@ -59,8 +59,8 @@ Result<DracoPrimitive::Attribute> numbersOf(const draco::Mesh& mesh, const draco
 Result<DracoPrimitive> readDraco(const GltfFile& file, const tinygltf::Primitive& primitive) {
     const tinygltf::Model& model = file.model();
     const tinygltf::Value& extension = primitive.extensions.at(kName);
-    const tinygltf::Value& view = extension.Get("bufferView");
-    const tinygltf::Value& names = extension.Get("attributes");
+    const tinygltf::Value& view = memberOf(extension, "bufferView");
+    const tinygltf::Value& names = memberOf(extension, "attributes");
     if (!view.IsInt() || !names.IsObject())
         return fail(fmt::format("{} lacks its buffer view or its attributes", kName));
     const auto bytes = bytesOf(model, view.Get<int>());
@@ -80,7 +80,7 @@ Result<DracoPrimitive> readDraco(const GltfFile& file, const tinygltf::Primitive
         for (const draco::PointIndex& corner : mesh.face(face)) result.indices.push_back(corner.value());
     }
     for (const std::string& name : names.Keys()) {
-        const tinygltf::Value& id = names.Get(name);
+        const tinygltf::Value& id = memberOf(names, name);
         const draco::PointAttribute* const from =
             id.IsInt() && id.Get<int>() >= 0
                 ? mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id.Get<int>()))

@@ -25,7 +25,7 @@ struct Packed {
 };
 
 bool take(const tinygltf::Value& from, const char* name, std::uint64_t& to) {
-    const tinygltf::Value& value = from.Get(name);
+    const tinygltf::Value& value = memberOf(from, name);
     if (!value.IsInt() || value.GetNumberAsInt() < 0) return false;
     to = static_cast<std::uint64_t>(value.GetNumberAsInt());
     return true;
@@ -36,13 +36,14 @@ Result<Packed> packedIn(const tinygltf::Value& extension) {
     std::uint64_t buffer = 0;
     if (!take(extension, "buffer", buffer) || !take(extension, "byteLength", packed.bytes) ||
         !take(extension, "byteStride", packed.stride) || !take(extension, "count", packed.count) ||
-        !extension.Get("mode").IsString())
+        !memberOf(extension, "mode").IsString())
         return fail(fmt::format("{} lacks its buffer, length, stride, count or mode", kMeshopt));
     packed.buffer = static_cast<int>(buffer);
     if (extension.Has("byteOffset") && !take(extension, "byteOffset", packed.offset))
         return fail(fmt::format("{} has a byteOffset that is no number", kMeshopt));
-    packed.mode = extension.Get("mode").Get<std::string>();
-    if (extension.Get("filter").IsString()) packed.filter = extension.Get("filter").Get<std::string>();
+    packed.mode = memberOf(extension, "mode").Get<std::string>();
+    const tinygltf::Value& filter = memberOf(extension, "filter");
+    if (filter.IsString()) packed.filter = filter.Get<std::string>();
     return packed;
 }
 

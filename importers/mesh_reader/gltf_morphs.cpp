@@ -56,7 +56,7 @@ std::string GltfMorphs::nameOf(std::uint32_t node, std::size_t target) const {
     const tinygltf::Model& model = file_.model();
     const tinygltf::Mesh& mesh = *meshOf(model, model.nodes[node]);
     // Where exporters have agreed to put them.
-    const tinygltf::Value& names = mesh.extras.Get("targetNames");
+    const tinygltf::Value& names = memberOf(mesh.extras, "targetNames");
     if (names.IsArray() && target < names.ArrayLen()) {
         const tinygltf::Value& name = names.Get(static_cast<int>(target));
         if (name.IsString() && !name.Get<std::string>().empty()) return name.Get<std::string>();

@@ -11,3 +11,14 @@
 #include <sstream>
 
 #include <tiny_gltf.h>
+
+namespace hairloom {
+
+/// The member of an object, or a value of no type: where `from` is no object, too, which its own Get() takes
+/// for granted.
+inline const tinygltf::Value& memberOf(const tinygltf::Value& from, const std::string& name) {
+    static const tinygltf::Value kNothing;
+    return from.Has(name) ? from.Get(name) : kNothing;
+}
+
+}  // namespace hairloom

@@ -110,6 +110,18 @@ TEST_F(MeshMorphs, LinearWeightsMoveWhatTheirTargetsHave) {
     EXPECT_FLOAT_EQ(late[0], 0);
 }
 
+TEST_F(MeshMorphs, NamesOfAnotherKindCountAsNone) {
+    const int target = lift({1});
+    const std::string talk = clip({0, 1, 0.5f});
+    for (const char* const extras :
+         {"null", "5", "[1]", R"({"targetNames":"brow"})", R"({"targetNames":[7]})"}) {
+        const auto scene =
+            imported("a.gltf", file(primitive({target}), talk, fmt::format(R"(,"extras":{})", extras)));
+        ASSERT_THAT(scene.morphs, SizeIs(1)) << extras;
+        EXPECT_EQ(scene.morphs[0].name, "face 0") << extras;
+    }
+}
+
 TEST_F(MeshMorphs, StepsHoldAndCubicSplinesAreFollowed) {
     const int target = lift({1});
     const auto steps = imported("a.gltf", file(primitive({target}), clip({0, 1, 0.5f}, "STEP")));
