@@ -11,11 +11,23 @@
 
 namespace hairloom {
 
+/// Sanitizers slow readers down.
+#if defined(HAIRLOOM_ADDRESS_SANITIZER) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr int kTimesSlower = 10;
+#else
+inline constexpr int kTimesSlower = 1;
+#endif
+/// `least` seconds and one for each 4 MiB.
+inline std::chrono::seconds timeOfFile(std::uint64_t fileBytes, std::uint64_t least) {
+    return kTimesSlower * std::chrono::seconds(least + (fileBytes >> 22u));
+}
+
 /// Of a mesh that assimp or tinygltf reads: a file of a kilobyte makes them want any memory.
 inline constexpr std::uint64_t kMeshMemory = std::uint64_t{3} << 29u;  // 1.5 GiB
-inline ChildLimits meshLimits() {
+inline ChildLimits meshLimits(std::uint64_t fileBytes) {
     ChildLimits limits;
     limits.residentBytes = kMeshMemory;
+    limits.time = timeOfFile(fileBytes, 8);
     limits.startsWithLength = true;
     return limits;
 }
@@ -23,10 +35,10 @@ inline ChildLimits meshLimits() {
 /// Of what readers of our own make of a file of so many bytes, text or packed: 2 GiB and eight times the
 /// file, a minute and a second for each 4 MiB.
 inline ChildLimits limitsOfFile(std::uint64_t fileBytes) {
-    constexpr std::uint64_t kMemory = std::uint64_t{2} << 30u, kBytesEachSecond = std::uint64_t{4} << 20u;
+    constexpr std::uint64_t kMemory = std::uint64_t{2} << 30u;
     ChildLimits limits;
     limits.residentBytes = limits.outputBytes = kMemory + 8 * fileBytes;
-    limits.time = std::chrono::seconds(60 + fileBytes / kBytesEachSecond);
+    limits.time = timeOfFile(fileBytes, 60);
     limits.startsWithLength = true;
     return limits;
 }
@@ -40,7 +52,7 @@ inline ChildLimits pictureLimits() {
     ChildLimits limits;
     limits.residentBytes = render::kMaxPictureBytes + kMaxPictureFile + kProgram;
     limits.outputBytes = render::kMaxPicturePixels * 4 * sizeof(float) + kProgram;
-    limits.time = std::chrono::seconds(60);
+    limits.time = timeOfFile(0, 60);
     limits.startsWithLength = true;
     return limits;
 }

@@ -72,8 +72,8 @@ bool startsWithUtf16Mark(const std::vector<std::byte>& bytes) {
 Result<RawScene> readRaw(const std::filesystem::path& path, MeshFormat format, std::uint64_t fileBytes) {
     const bool isOurs = format == MeshFormat::Obj || format == MeshFormat::Ply || format == MeshFormat::Usd ||
                         format == MeshFormat::Alembic;
-    const auto answer =
-        readInChild(std::string(name(format)), path, {}, isOurs ? limitsOfFile(fileBytes) : meshLimits());
+    const auto answer = readInChild(std::string(name(format)), path, {},
+                                    isOurs ? limitsOfFile(fileBytes) : meshLimits(fileBytes));
     if (!answer) return tl::unexpected(answer.error());
     std::string lacking;
     auto scene = readRawScene(path.string(), *answer, lacking);

@@ -36,7 +36,7 @@ struct ImportedScene {
 
 /// Reads a file by its content; its name plays no part. It is read in a process of its own
 /// (hairloom-mesh-reader, found beside the running program or named by the environment variable
-/// HAIRLOOM_MESH_READER), FBX, glTF and STL within 8 s and 1.5 GiB, others within limitsOfFile(). Errors:
+/// HAIRLOOM_MESH_READER), FBX, glTF and STL within meshLimits(), others within limitsOfFile(). Errors:
 /// missing or unreadable file, no supported format, damaged or too large for these limits, no faces, nothing
 /// left after repair.
 Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options = {});
