@@ -19,6 +19,7 @@
 
 #include "importers/confinement.h"
 #include "importers/namespaces_linux.h"
+#include "importers/sanitized.h"
 
 namespace hairloom {
 namespace {
@@ -52,13 +53,6 @@ constexpr std::array kAllowed{
     SYS_stat,          SYS_lstat,
 #endif
 };
-
-/// Sanitizers make system calls of their own.
-#if defined(HAIRLOOM_ADDRESS_SANITIZER) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 constexpr sock_filter load(std::size_t offset) {
     return BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offset));

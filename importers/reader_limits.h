@@ -8,21 +8,19 @@
 
 #include "core/render/picture_limits.h"
 #include "importers/child_process.h"
+#include "importers/sanitized.h"
 
 namespace hairloom {
 
-/// Sanitizers slow readers down.
-#if defined(HAIRLOOM_ADDRESS_SANITIZER) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr int kTimesSlower = 10;
-#else
-inline constexpr int kTimesSlower = 1;
-#endif
 /// `least` seconds and one for each 4 MiB.
 inline std::chrono::seconds timeOfFile(std::uint64_t fileBytes, std::uint64_t least) {
-    return kTimesSlower * std::chrono::seconds(least + (fileBytes >> 22u));
+    constexpr std::uint64_t kBytesEachSecond = std::uint64_t{4} << 20u;
+    constexpr int kTimesSlower = kSanitized ? 10 : 1;
+    return kTimesSlower * std::chrono::seconds(least + fileBytes / kBytesEachSecond);
 }
 
-/// Of a mesh that assimp or tinygltf reads: a file of a kilobyte makes them want any memory.
+/// Of a mesh that assimp or tinygltf reads: 8 seconds and one for each 4 MiB, and bounded memory, for a file
+/// of a kilobyte makes them want any.
 inline constexpr std::uint64_t kMeshMemory = std::uint64_t{3} << 29u;  // 1.5 GiB
 inline ChildLimits meshLimits(std::uint64_t fileBytes) {
     ChildLimits limits;

@@ -80,7 +80,7 @@ Result<DracoPrimitive> readDraco(const GltfFile& file, const tinygltf::Primitive
         for (const draco::PointIndex& corner : mesh.face(face)) result.indices.push_back(corner.value());
     }
     for (const std::string& name : names.Keys()) {
-        const tinygltf::Value& id = memberOf(names, name);
+        const tinygltf::Value& id = names.Get(name);
         const draco::PointAttribute* const from =
             id.IsInt() && id.Get<int>() >= 0
                 ? mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id.Get<int>()))

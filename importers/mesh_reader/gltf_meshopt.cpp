@@ -34,14 +34,15 @@ bool take(const tinygltf::Value& from, const char* name, std::uint64_t& to) {
 Result<Packed> packedIn(const tinygltf::Value& extension) {
     Packed packed;
     std::uint64_t buffer = 0;
+    const tinygltf::Value& mode = memberOf(extension, "mode");
     if (!take(extension, "buffer", buffer) || !take(extension, "byteLength", packed.bytes) ||
         !take(extension, "byteStride", packed.stride) || !take(extension, "count", packed.count) ||
-        !memberOf(extension, "mode").IsString())
+        !mode.IsString())
         return fail(fmt::format("{} lacks its buffer, length, stride, count or mode", kMeshopt));
     packed.buffer = static_cast<int>(buffer);
     if (extension.Has("byteOffset") && !take(extension, "byteOffset", packed.offset))
         return fail(fmt::format("{} has a byteOffset that is no number", kMeshopt));
-    packed.mode = memberOf(extension, "mode").Get<std::string>();
+    packed.mode = mode.Get<std::string>();
     const tinygltf::Value& filter = memberOf(extension, "filter");
     if (filter.IsString()) packed.filter = filter.Get<std::string>();
     return packed;

@@ -14,11 +14,11 @@
 
 namespace hairloom {
 
-/// The member of an object, or a value of no type: where `from` is no object, too, which its own Get() takes
-/// for granted.
+/// The member of an object, or a value of no type; also where `from` is no object, with which its own Get()
+/// may end the program.
 inline const tinygltf::Value& memberOf(const tinygltf::Value& from, const std::string& name) {
     static const tinygltf::Value kNothing;
-    return from.Has(name) ? from.Get(name) : kNothing;
+    return from.IsObject() ? from.Get(name) : kNothing;
 }
 
 }  // namespace hairloom
