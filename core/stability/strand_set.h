@@ -14,6 +14,7 @@ struct StrandSet {
     std::vector<std::uint32_t> offsets{0};
     std::vector<runtime::Float3> points;  ///< at rest, metres
     std::vector<float> masses;            ///< of points, or none
+    std::vector<float> stiffness;         ///< of strands, as runtime::StrandsView has it, or none
 
     void add(const std::vector<runtime::Float3>& strand) {
         points.insert(points.end(), strand.begin(), strand.end());
@@ -26,7 +27,7 @@ struct StrandSet {
         offsets.push_back(static_cast<std::uint32_t>(points.size()));
     }
 
-    runtime::StrandsView view() const { return {offsets, points, {}, masses}; }
+    runtime::StrandsView view() const { return {offsets, points, {}, masses, stiffness}; }
     std::uint32_t count() const { return static_cast<std::uint32_t>(offsets.size() - 1); }
     /// Roots in their rest positions, turned about the origin, then moved.
     std::vector<runtime::RootFrame> roots(runtime::Float3 shift = {}, runtime::Quat turn = {}) const {

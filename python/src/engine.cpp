@@ -55,15 +55,17 @@ runtime::SimulationSettings settingsOf(nb::handle given, runtime::SimulationSett
 }
 
 std::unique_ptr<PyEngine> makeEngine(nb::handle positions, nb::handle offsets, nb::handle settings,
-                                     nb::handle masses) {
+                                     nb::handle masses, nb::handle stiffness) {
     const Input<Vec3f> points("positions", positions);
     const Input<std::uint32_t> starts("offsets", offsets);
-    std::optional<Input<float>> weights;
+    std::optional<Input<float>> weights, factors;
     if (!masses.is_none()) weights.emplace("masses", masses);
+    if (!stiffness.is_none()) factors.emplace("stiffness", stiffness);
     std::vector<Float3> rest;
     for (const Vec3f& point : points.values()) rest.push_back(asEngine(point));
     runtime::StrandsView strands{starts.values(), rest, {}, {}};
     if (weights) strands.masses = weights->values();
+    if (factors) strands.stiffness = factors->values();
     const auto authored = settingsOf(settings, {});
     runtime::Host host;
     host.parallelFor = parallelFor;
@@ -242,11 +244,14 @@ void bindEngine(nb::module_& module) {
         "BusyError.")
         .def(nb::new_(&makeEngine), "positions"_a.none(), "offsets"_a.none(),
              "settings"_a.none() = nb::none(), "masses"_a.none() = nb::none(),
+             "stiffness"_a.none() = nb::none(),
              "Strands at rest.\n\npositions: float32 (n, 3), metres, root first. offsets: uint32 (strands + "
              "1,), strand s owns the "
              "points offsets[s] to offsets[s + 1], 2 to 512 of them. settings: fields of 'simulation' in "
              "docs/reference.md. masses: "
-             "float32 (n,) above 0, only ratios within a strand count.\n\nRaises ArgumentError for other "
+             "float32 (n,) above 0, only ratios within a strand count. stiffness: float32 (strands,), 0 to "
+             "1000, times the bending and torsional stiffness of the settings.\n\nRaises ArgumentError for "
+             "other "
              "types or shapes, and Error for "
              "a setting out of range or a strand that is too short or too long.")
         .def("reset", &reset, "root_positions"_a.none(), "root_rotations"_a.none() = nb::none(),

@@ -55,6 +55,25 @@ class Engines(unittest.TestCase):
         with self.assertRaises(hairloom.Error):
             blown.set_settings({"gravity": 3})
 
+    def test_stiffer_strands_move_less(self) -> None:
+        factors = np.where(np.arange(20) < 10, 50, 1).astype(np.float32)
+        blown, even = (hairloom.Engine(self.positions, self.offsets, stiffness=given) for given in (factors, None))
+        for engine in (blown, even):
+            engine.reset(self.roots)
+            for _ in range(60):
+                engine.step(DT, self.roots, wind=(0, 0, 6))
+        moved = (blown.positions() - self.positions).reshape(20, 8, 3)
+        without = (even.positions() - self.positions).reshape(20, 8, 3)
+        self.assertLess(np.abs(moved[:10, -1]).max(), 0.5 * np.abs(without[:10, -1]).max())
+        np.testing.assert_array_equal(moved[10:], without[10:])
+        with self.assertRaisesRegex(hairloom.Error, "19 values of stiffness for 20 strands"):
+            hairloom.Engine(self.positions, self.offsets, stiffness=factors[:19])
+        factors[3] = -1
+        with self.assertRaisesRegex(hairloom.Error, "stiffness of strand 3 is -1"):
+            hairloom.Engine(self.positions, self.offsets, stiffness=factors)
+        with self.assertRaises(hairloom.ArgumentError):
+            hairloom.Engine(self.positions, self.offsets, stiffness=factors.astype(np.float64))
+
     def test_a_capsule_holds_what_its_spheres_miss(self) -> None:
         # A bar below the middles of the rows, whose ends are out of their reach.
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)

@@ -45,6 +45,16 @@ std::string validationError(const StrandsView& strands) {
         if (!(strands.masses[p] > 0.0f) || !std::isfinite(strands.masses[p]))
             return "mass of point " + std::to_string(p) + " is not a number above 0";
     }
+    if (!strands.stiffness.empty() && strands.stiffness.size() != count) {
+        return std::to_string(strands.stiffness.size()) + " values of stiffness for " +
+               std::to_string(count) + " strands; expected none or one each";
+    }
+    std::string outside;
+    for (std::size_t s = 0; s < strands.stiffness.size() && outside.empty(); ++s) {
+        refuseOutside(outside, ("stiffness of strand " + std::to_string(s)).c_str(),
+                      static_cast<double>(strands.stiffness[s]), 0.0, static_cast<double>(kMostStiffness));
+    }
+    if (!outside.empty()) return outside;
     for (std::size_t p = 0; p < strands.restPositions_ss.size(); ++p) {
         const Float3 at = strands.restPositions_ss[p];
         if (!isFinite(at) || std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)}) > kFarthest) {

@@ -180,7 +180,7 @@ std::uint64_t mix(std::uint64_t hash, const void* data, std::size_t bytes) {
 
 std::size_t RestShape::bytes() const {
     return offsets.size() * sizeof(offsets[0]) + blocks.size() * sizeof(Block) +
-           planes.size() * sizeof(float) + restRoots.size() * sizeof(RootFrame);
+           (planes.size() + stiffness.size()) * sizeof(float) + restRoots.size() * sizeof(RootFrame);
 }
 
 Floats zeroFloats(std::size_t count, const Host& host) {
@@ -204,6 +204,8 @@ std::shared_ptr<const RestShape> makeRestShape(const StrandsView& strands, const
         normalize(rotation);
         shape->restRoots[s] = {strands.restPositions_ss[strands.offsets[s]], rotation};
     }
+    if (std::any_of(strands.stiffness.begin(), strands.stiffness.end(), [](float s) { return s != 1.0f; }))
+        shape->stiffness.assign(strands.stiffness.begin(), strands.stiffness.end());
     if (count == 0) return shape;
     shape->blocks = groupStrands(strands, host, shape->straight);
     shape->planeFloats = shape->blocks.back().firstPlane + planeSize(shape->blocks.back());

@@ -68,11 +68,13 @@ struct RestShape {
     std::size_t planeFloats = 0;  ///< sum of the blocks' plane sizes
     Floats planes;                ///< per block: rest x, y, z, length, inverse length, inverse mass
     Vector<RootFrame> restRoots;
+    Vector<float> stiffness;  ///< StrandsView::stiffness; empty where all are 1
     std::uint32_t longestPointCount = 0;
     float longestStrand = 0.0f;  ///< metres
     bool straight = true;        ///< no strand bends at rest
 
     std::size_t bytes() const;
+    float stiffnessOf(std::uint32_t strand) const { return stiffness.empty() ? 1.0f : stiffness[strand]; }
 };
 
 /// A plane holds one float per point and lane.

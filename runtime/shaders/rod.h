@@ -171,6 +171,13 @@ ROD_FUNCTION void rodAddContact(ROD_INOUT(RodForm) f, Real h0, Real h1, Real h2,
     f.P[5] = f.P[5] + h5;
 }
 
+/// 1/D of a pivot D, which is no smaller than `least`. One that is as far below 0 is rounding of what lies
+/// beyond, and each segment would make a million times as much of it: nothing turns there.
+ROD_FUNCTION Real rodInverse(Real pivot, Real least) {
+    const Real none = ROD_NUMBER(0.0);
+    return choose(pivot < none - least, none, ROD_NUMBER(1.0) / maximum(pivot, least));
+}
+
 /// Takes a form from a segment's outer node to its inner one and eliminates the segment's rotation. `q` is
 /// the segment's rotation, t its tangent, `relative` the p of the vertex at its inner node, e the strain
 /// there less what it is pulled to.
@@ -231,11 +238,11 @@ ROD_FUNCTION void rodEliminate(ROD_INOUT(RodForm) f, Real4 q, Real3 t, Real segm
     const Real least = mad(
         bend, ROD_NUMBER(HAIRLOOM_ROD_LEAST_PIVOT),
         (absolute(S.m[0]) + absolute(S.m[3]) + absolute(S.m[5])) * ROD_NUMBER(HAIRLOOM_ROD_PIVOT_ROUNDING));
-    const Real D0 = maximum(S.m[0], least), i0 = ROD_NUMBER(1.0) / D0;
+    const Real i0 = rodInverse(S.m[0], least);
     const Real l1 = S.m[1] * i0, l2 = S.m[2] * i0;
-    const Real D1 = maximum(negMad(l1, S.m[1], S.m[3]), least), i1 = ROD_NUMBER(1.0) / D1;
+    const Real i1 = rodInverse(negMad(l1, S.m[1], S.m[3]), least);
     const Real s3 = negMad(l1, S.m[2], S.m[4]), l3 = s3 * i1;
-    const Real D2 = maximum(negMad(l3, s3, negMad(l2, S.m[2], S.m[5])), least), i2 = ROD_NUMBER(1.0) / D2;
+    const Real i2 = rodInverse(negMad(l3, s3, negMad(l2, S.m[2], S.m[5])), least);
 
     // Columns of L⁻¹ [Wᵀ Y g], and S⁻¹ of them.
     const Real3 total = gu + g;

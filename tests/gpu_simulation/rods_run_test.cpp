@@ -171,6 +171,29 @@ TEST_P(EachRodLayout, GentleMotionStaysWithTheCpu) {
     EXPECT_LE(offAfter(manyPointCounts({2, 3, 70, 512}), 2), 5e-5);
 }
 
+/// A chain, soft and stiff hair beside each other in the blocks of one batch.
+TEST_F(RodRun, StrandsOfTheirOwnStiffnessStayWithTheCpu) {
+    StrandSet strands = manyPointCounts({16, 9, 16, 16, 33, 16});
+    strands.stiffness = {1.0f, 0.25f, 4.0f, 0.0f, 30.0f, runtime::kMostStiffness};
+    SimulationSettings settings = rods();
+    settings.substeps = 4;
+    settings.restGravity = 0.0f;
+    Both both(strands, settings, options());
+    StrandSet even = strands;
+    even.stiffness.clear();
+    runtime::Engine other = *runtime::Engine::make(even.view(), settings).engine;
+    for (int f = 1; f <= 30; ++f) {
+        const double time = f * static_cast<double>(kFrame);
+        const auto roots = strands.roots({0.05f * static_cast<float>(time), 0.0f, 0.0f}, turned(time));
+        both.step({kFrame, time, roots, {}});
+        other.step({kFrame, time, roots, {}});
+    }
+    EXPECT_LE(both.farthest(), 5e-5);
+    std::vector<Float3> elsewhere(other.pointCount());
+    other.readPositions(elsewhere);
+    EXPECT_GT(farthest(both.onGpu(), elsewhere), 0.01) << "else nothing is softer or stiffer";
+}
+
 /// Frames of any length, and none.
 TEST_F(RodRun, FrameTimesMayChange) {
     const StrandSet strands = manyPointCounts({2, 9, 16, 40});

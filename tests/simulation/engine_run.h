@@ -47,7 +47,8 @@ inline runtime::SimulationSettings withSteps(runtime::SimulationSettings s, runt
 inline std::vector<std::vector<Vec3d>> engineRun(const Swing& swing, const runtime::SimulationSettings& s) {
     std::vector<runtime::Float3> rest;
     for (const Vec3d& p : swing.strands.restPositions_ss) rest.push_back(toFloat3(p));
-    runtime::Engine::Result made = runtime::Engine::make({swing.strands.offsets, rest}, s);
+    const std::vector<float> stiffness(swing.strands.stiffness.begin(), swing.strands.stiffness.end());
+    runtime::Engine::Result made = runtime::Engine::make({swing.strands.offsets, rest, {}, {}, stiffness}, s);
     EXPECT_EQ(made.error, "");
     std::vector<std::vector<Vec3d>> result;
     std::vector<runtime::Float3> points(rest.size());

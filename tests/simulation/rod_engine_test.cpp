@@ -73,6 +73,14 @@ TEST(RodsConverge, SoftHairThatCarriesItsWeight) {
     expectConvergence(rodErrors(swing(curl(), 40), soft), 0.08, 2.4);
 }
 
+TEST(RodsConverge, StrandsOfTheirOwnStiffness) {
+    for (const double stiffness : {0.25, 4.0}) {
+        reference::Strands own = helix();
+        own.stiffness = {stiffness};
+        expectConvergence(rodErrors(swing(own, 40), rods()), 1.8, 2.4);
+    }
+}
+
 TEST(RodsConverge, SprungRoot) {
     runtime::SimulationSettings sprung = rods();
     sprung.clampedPoints = 1;

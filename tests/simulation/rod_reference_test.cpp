@@ -22,15 +22,17 @@ float authoredOf(double B) {
 }
 
 /// Distance of the tip at rest from that of the elastica, as a share of the length. The held end is the
-/// strand's root.
-double rodTipError(std::size_t segments, double stiffness, std::uint32_t clamped) {
+/// strand's root. The settings have the stiffness over `stiffer`, and the strand makes up for it.
+double rodTipError(std::size_t segments, double stiffness, std::uint32_t clamped, double stiffer = 1.0) {
     constexpr double kLength = 0.2;
     runtime::SimulationSettings s = bareRods();
     s.clampedPoints = clamped;
-    s.angularStiffness = authoredOf(stiffness);
-    reference::Solver solver = solverOf(straightStrand(segments, kLength), s);
+    s.angularStiffness = authoredOf(stiffness / stiffer);
+    reference::Strands strand = straightStrand(segments, kLength);
+    strand.stiffness = {stiffer};
+    reference::Solver solver = solverOf(strand, s);
     EXPECT_LT(comeToRest(solver), 1e-9);
-    const double B = reference::bendingStiffness(static_cast<double>(s.angularStiffness));
+    const double B = stiffer * reference::bendingStiffness(static_cast<double>(s.angularStiffness));
     const ElasticaShape right = solveElastica(B, kGravity, kLength);
     return (solver.positions_ws().back() - Vec3d(right.reach, -right.drop, 0.0)).norm() / kLength;
 }
@@ -51,6 +53,24 @@ TEST(RodElastica, CantileverComesToRestOnIt) {
             for (std::size_t i = 0; i + 1 < errors.size(); ++i) EXPECT_LT(errors[i + 1], 0.4 * errors[i]);
         }
     }
+}
+
+TEST(RodElastica, AStrandOfItsOwnStiffnessComesToRestOnThatOfItsOwn) {
+    const double stiffness = elasticaStiffness(0.4, kGravity, 0.2);
+    for (const double stiffer : {0.25, 4.0}) EXPECT_LE(rodTipError(32, stiffness, 2, stiffer), 0.004);
+}
+
+TEST(RodElastica, RefusesAStiffnessThatIsNone) {
+    const auto errorOf = [](std::vector<double> stiffness) {
+        reference::Strands strand = straightStrand(4, 0.2);
+        strand.stiffness = std::move(stiffness);
+        const auto made = reference::Solver::make(strand, bareRods());
+        return made ? std::string() : made.error().message();
+    };
+    EXPECT_EQ(errorOf({2.0}), "");
+    EXPECT_NE(errorOf({1.0, 1.0}).find("none or one per strand"), std::string::npos);
+    EXPECT_NE(errorOf({-1.0}).find("0 or more"), std::string::npos);
+    EXPECT_NE(errorOf({std::nan("")}).find("0 or more"), std::string::npos);
 }
 
 /// A single segment, so stiff that it turns a little only, swings with ω² = k/(m l²), on top of gravity.

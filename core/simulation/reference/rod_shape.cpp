@@ -31,10 +31,9 @@ double stiffnessOf(const StrandShape& body, const runtime::SimulationSettings& s
     const double total = std::accumulate(body.lengths.begin(), body.lengths.end(), 0.0);
     const double along = static_cast<double>(j) / static_cast<double>(n);
     const double authored = authoredStiffness(settings, along);
+    const double even = authored < 1.0 ? bendingStiffness(authored) : std::numeric_limits<double>::max();
     const double stiff =
-        authored < 1.0
-            ? std::min(bendingStiffness(authored) / static_cast<double>(settings.sectionRatio), kStiffest)
-            : kStiffest;
+        std::min(body.stiffer * (even / static_cast<double>(settings.sectionRatio)), kStiffest);
     double span = 0.5 * body.lengths[j];
     // The vertex at the clamp stands for the whole clamped segment.
     if (j > 0) span += (j + 1 == body.firstFree ? 1.0 : 0.5) * body.lengths[j - 1];

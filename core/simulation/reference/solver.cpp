@@ -60,6 +60,11 @@ Status check(const Strands& strands, const runtime::SimulationSettings& settings
         return fail("root rotations do not match the strands", "none or one per strand");
     for (const double mass : strands.pointMasses)
         if (!(mass > 0.0) || !std::isfinite(mass)) return fail("a mass is not above 0");
+    if (!strands.stiffness.empty() && strands.stiffness.size() + 1 != strands.offsets.size())
+        return fail("stiffness does not match the strands", "none or one per strand");
+    for (const double stiffness : strands.stiffness)
+        if (!(stiffness >= 0.0) || !std::isfinite(stiffness))
+            return fail("a stiffness is below 0", "0 or more");
     for (std::size_t s = 0; s + 1 < strands.offsets.size(); ++s) {
         const std::uint32_t first = strands.offsets[s], end = strands.offsets[s + 1];
         if (end < first + 2 || end > points)
@@ -80,6 +85,7 @@ Strands strandsOf(const runtime::StrandsView& view) {
     strands.offsets.assign(view.offsets.begin(), view.offsets.end());
     for (const runtime::Float3 p : view.restPositions_ss) strands.restPositions_ss.push_back(toDouble(p));
     for (const runtime::Quat q : view.rootRotations_ss) strands.rootRotations_ss.push_back(toDouble(q));
+    strands.stiffness.assign(view.stiffness.begin(), view.stiffness.end());
     return strands;
 }
 
@@ -109,15 +115,16 @@ Result<Solver> Solver::make(const Strands& strands, const runtime::SimulationSet
         }
         std::span<const double> masses(strands.pointMasses);
         if (!masses.empty()) masses = masses.subspan(first, end - first);
+        const double stiffer = strands.stiffness.empty() ? 1.0 : strands.stiffness[s];
         Strand strand;
         strand.root = root;
         if (solver.physics_.rods) {
-            strand.shape = makeBody(std::move(edges), masses, settings);
+            strand.shape = makeBody(std::move(edges), masses, settings, stiffer);
             strand.rod.emplace();
             strand.rod->shape =
                 makeRodShape(strand.shape, settings, root.rotation.conjugate() * solver.physics_.gravity);
         } else {
-            strand.shape = makeShape(std::move(edges), masses, settings);
+            strand.shape = makeShape(std::move(edges), masses, settings, stiffer);
         }
         solver.strands_.push_back(std::move(strand));
         solver.restRoots_.push_back(root);

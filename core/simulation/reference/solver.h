@@ -37,6 +37,7 @@ struct Strands {
     std::vector<Vec3d> restPositions_ss;        ///< m
     std::vector<Quaterniond> rootRotations_ss;  ///< empty: the identity
     std::vector<double> pointMasses;            ///< above 0, one per point; only ratios within a strand count
+    std::vector<double> stiffness;              ///< of strands, times the settings'; empty: 1
 };
 
 struct Root {

@@ -57,7 +57,7 @@ void setStiffness(StrandShape& shape, const std::vector<double>& h,
         const double authored = authoredStiffness(settings, static_cast<double>(j) / static_cast<double>(n));
         const double span =
             j == first ? 0.5 * shape.lengths[j] : 0.5 * (shape.lengths[j - 1] + shape.lengths[j]);
-        shape.stiffness[j] = bendingStiffness(authored) * shape.masses[j] / h[j] / span;
+        shape.stiffness[j] = shape.stiffer * bendingStiffness(authored) * shape.masses[j] / h[j] / span;
     }
 }
 
@@ -108,8 +108,9 @@ double bendingStiffness(double authored) {
 }
 
 StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                     const runtime::SimulationSettings& settings) {
+                     const runtime::SimulationSettings& settings, double stiffer) {
     StrandShape shape;
+    shape.stiffer = stiffer;
     const std::size_t n = edges.size();
     shape.firstFree = std::min<std::size_t>(settings.clampedPoints, n + 1);
     shape.edges = std::move(edges);
@@ -126,8 +127,8 @@ StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredM
 }
 
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings) {
-    StrandShape shape = makeBody(std::move(edges), authoredMasses, settings);
+                      const runtime::SimulationSettings& settings, double stiffer) {
+    StrandShape shape = makeBody(std::move(edges), authoredMasses, settings, stiffer);
     const std::size_t n = shape.segments();
     const std::vector<double> h = shares(shape.lengths);
     setStiffness(shape, h, settings);

@@ -64,18 +64,19 @@ struct StrandShape {
     std::vector<double> flexion;     ///< of the pair p_{j−1}, p_{j+1}, j = 1 … n−1 (entry 0 unused)
     std::vector<double> pairLength;  ///< rest distance of that pair
     std::size_t firstFree;           ///< points before it follow the root
+    double stiffer = 1.0;            ///< times the stiffness that settings say
 
     std::size_t points() const { return masses.size(); }
     std::size_t segments() const { return lengths.size(); }
 };
 
 /// Lengths and masses alone, without springs. `edges` in the root's frame, each of a length above 0;
-/// `authoredMasses` empty or one above 0 per point.
+/// `authoredMasses` empty or one above 0 per point; `stiffer` as StrandsView::stiffness.
 StrandShape makeBody(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                     const runtime::SimulationSettings& settings);
+                     const runtime::SimulationSettings& settings, double stiffer = 1.0);
 /// With the springs of StrandModel::springs.
 StrandShape makeShape(std::vector<Vec3d> edges, std::span<const double> authoredMasses,
-                      const runtime::SimulationSettings& settings);
+                      const runtime::SimulationSettings& settings, double stiffer = 1.0);
 
 /// The part of v across the unit vector t.
 inline Vec3d across(const Vec3d& t, const Vec3d& v) {

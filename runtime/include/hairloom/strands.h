@@ -19,6 +19,9 @@ struct RootFrame {
     Quat rotation;  ///< need not be exactly of unit length
 };
 
+/// The most of StrandsView::stiffness.
+inline constexpr float kMostStiffness = 1000.0f;
+
 /// Strands as authored, root to tip. Strand s owns points offsets[s] up to offsets[s + 1], 2 to kMaxPoints of
 /// them.
 struct StrandsView {
@@ -30,6 +33,10 @@ struct StrandsView {
     std::span<const Quat> rootRotations_ss{};
     /// Mass of each point, above 0, in any unit: only the ratios within a strand count. Empty: even rods.
     std::span<const float> masses{};
+    /// Of each strand, 0 … kMostStiffness: times the bending and torsional stiffness that settings say. 0 is
+    /// limp. Hair that holds its shape against its weight (restGravity) stays as stiff as that takes. Empty:
+    /// 1 everywhere.
+    std::span<const float> stiffness{};
 };
 
 /// Another shape of the strands, for them to follow (Engine::setPoses()).

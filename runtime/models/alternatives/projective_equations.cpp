@@ -49,6 +49,7 @@ ProjectiveEquations::Result ProjectiveEquations::make(const StrandsView& strands
     made.roots_.resize(roots.size());
     for (std::size_t s = 0; s < roots.size(); ++s) {
         made.roots_[s].rest = roots[s];
+        if (!strands.stiffness.empty()) made.roots_[s].stiffness = strands.stiffness[s];
         const Quat toRoot = conjugate(roots[s].rotation);
         const Float3 up = rotate(toRoot, {0.0f, 1.0f, 0.0f});
         for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
@@ -125,7 +126,7 @@ void ProjectiveEquations::fillSticks() {
             const float l = stick.length;
             const float along = static_cast<float>(j) / static_cast<float>(segments);
             const float inner = j >= settings_.clampedPoints ? sticks_[root + j].length : 0.0f;
-            const double rod = rodStiffness(settings_, along);
+            const double rod = rodStiffness(settings_, along, roots_[s].stiffness);
             const double slope = rod > 0.0 ? 3.0 * rod / (0.5 * (l + inner) * std::pow(l, 3.0)) : 0.0;
             stick.fixed = j + 1 < settings_.clampedPoints || !(slope < static_cast<double>(kRigid));
             stick.bend = stick.fixed ? 0.0f : static_cast<float>(slope);

@@ -70,6 +70,7 @@ RigidChains::Result RigidChains::make(const StrandsView& strands, const Simulati
     made.roots_.resize(roots.size());
     for (std::size_t s = 0; s < roots.size(); ++s) {
         made.roots_[s].rest = roots[s];
+        if (!strands.stiffness.empty()) made.roots_[s].stiffness = strands.stiffness[s];
         for (std::uint32_t p = strands.offsets[s] + 1; p < strands.offsets[s + 1]; ++p) {
             Segment& segment = made.segments_[p];
             const Float3 edge = rotate(conjugate(roots[s].rotation),
@@ -102,8 +103,8 @@ void RigidChains::fillSegments() {
             const float along = static_cast<float>(j) / static_cast<float>(count);
             const float inner = j >= settings_.clampedPoints ? segments_[root + j].length : 0.0f;
             const double between = 0.5 * (static_cast<double>(segment.length) + static_cast<double>(inner));
-            const double held =
-                std::min(rodStiffness(settings_, along) / between, static_cast<double>(kChainStiffest));
+            const double held = std::min(rodStiffness(settings_, along, roots_[s].stiffness) / between,
+                                         static_cast<double>(kChainStiffest));
             segment.stiffness = segment.fixed ? 0.0f : static_cast<float>(held);
         }
         aimAgainst(s, rotate(conjugate(roots_[s].rest.rotation), settings_.gravity) * settings_.restGravity);

@@ -50,9 +50,11 @@ std::vector<RootFrame> rootsAtRest(const StrandsView& strands) {
     return roots;
 }
 
-double rodStiffness(const SimulationSettings& settings, float along) {
+double rodStiffness(const SimulationSettings& settings, float along, float ofStrand) {
+    if (!(ofStrand > 0.0f)) return 0.0;
     const float authored = settings.angularStiffness * settings.angularCurve.at(along);
-    return kHairBendingStiffness * static_cast<double>(authored) / (1.0 - static_cast<double>(authored));
+    return kHairBendingStiffness * static_cast<double>(ofStrand) * static_cast<double>(authored) /
+           (1.0 - static_cast<double>(authored));
 }
 
 WindyFrame::WindyFrame(const Wind& wind, const FrameInput& frameInput)

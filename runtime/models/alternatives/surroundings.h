@@ -32,8 +32,8 @@ Float3 rotationVector(Quat q);
 std::vector<RootFrame> rootsAtRest(const StrandsView& strands);
 
 /// B of the rod at `along` (0…1) its strand, for hair that weighs 1 per metre: m⁴/s². Infinite at
-/// stiffness 1.
-double rodStiffness(const SimulationSettings& settings, float along);
+/// stiffness 1. `ofStrand` as StrandsView::stiffness.
+double rodStiffness(const SimulationSettings& settings, float along, float ofStrand);
 
 /// A frame's input, and the gusts at its start and end.
 struct WindyFrame {

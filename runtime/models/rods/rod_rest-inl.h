@@ -80,7 +80,7 @@ class RestRods {
             return;
         }
         if (isFlat()) layFlat();
-        fillStiffness();
+        fillStiffness(lane);
         weigh(lane);
         stiffen();
     }
@@ -180,7 +180,11 @@ class RestRods {
     }
 
     /// B/l̄. The vertex at the clamp stands for the half segment beside it, too.
-    void fillStiffness() {
+    void fillStiffness(std::uint32_t lane) {
+        double strand[kWide];
+        for (std::size_t i = 0; i < kWide; ++i)
+            strand[i] = static_cast<double>(shape_.stiffnessOf(block_.strandOfLane[lane + i]));
+        const R ofStrand = loadLanes(strand);
         const R least = greater(total_ * num(1e-3 / segments_), num(1e-9));
         for (std::uint32_t j = 0; j < segments_; ++j) {
             const double share =
@@ -190,7 +194,8 @@ class RestRods {
             R own = num(0.5) * (before + at_[j].length);
             if (j == first_ && j > 0) own = own + num(0.5) * before;
             at_[j].own = at_[j].stiffness =
-                num(std::min(section_.stiffer * bendingStiffnessOf(share), kStiffest)) / greater(own, least);
+                lesser(num(section_.stiffer * bendingStiffnessOf(share)) * ofStrand, num(kStiffest)) /
+                greater(own, least);
             at_[j].turnedAt = num(-1.0);
             at_[j].strain = zero3();
         }

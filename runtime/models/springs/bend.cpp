@@ -38,7 +38,8 @@ class StrandBend {
           block_(shape.blocks[index]),
           size_(planeSize(block_)),
           rest_(shape.planes.data() + block_.firstPlane * kRestPlanes),
-          lane_(lane) {}
+          lane_(lane),
+          stiffer_(static_cast<double>(shape.stiffnessOf(block_.strandOfLane[lane]))) {}
 
     /// κ of each joint, in square metres per square second and unit mass; the system has the masses plus
     /// `share`·K, which is bounded at `stiffest` times the masses where that is not 0.
@@ -50,7 +51,7 @@ class StrandBend {
             const double along = static_cast<double>(j) / segments;
             const double s =
                 static_cast<double>(settings_.angularStiffness) * settings_.angularCurve.at(along);
-            const double stiffness = bendingStiffnessOf(s);
+            const double stiffness = stiffer_ * bendingStiffnessOf(s);
             const double outer = lengthOf(j);
             const double inner = j > 0 ? lengthOf(j - 1) : 0.0;
             const bool clamped = j + 1 == settings_.clampedPoints || j == 0;
@@ -154,6 +155,7 @@ class StrandBend {
     std::size_t size_;
     const float* rest_;
     std::uint32_t lane_;
+    double stiffer_;  // than settings say
     std::array<double, kMaxPoints> kappa_;
 };
 

@@ -53,7 +53,7 @@ struct Sample {
     std::vector<std::uint32_t> offsets{0};
     std::vector<Float3> positions_ss;
     std::vector<Quat> rotations_ss;
-    std::vector<float> masses;
+    std::vector<float> masses, stiffness;
     std::vector<RootFrame> roots_ws;
 
     Sample(const StrandsView& strands, std::span<const std::uint32_t> chosen) {
@@ -65,11 +65,12 @@ struct Sample {
             }
             const Quat turned = strands.rootRotations_ss.empty() ? Quat{} : strands.rootRotations_ss[s];
             if (!strands.rootRotations_ss.empty()) rotations_ss.push_back(turned);
+            if (!strands.stiffness.empty()) stiffness.push_back(strands.stiffness[s]);
             offsets.push_back(static_cast<std::uint32_t>(positions_ss.size()));
             roots_ws.push_back({strands.restPositions_ss[first], turned});
         }
     }
-    StrandsView view() const { return {offsets, positions_ss, rotations_ss, masses}; }
+    StrandsView view() const { return {offsets, positions_ss, rotations_ss, masses, stiffness}; }
 };
 
 }  // namespace

@@ -83,7 +83,8 @@ class ProjectiveEquations {
   private:
     struct Root {
         RootFrame rest, now;
-        Float3 velocity;  ///< over the last frame
+        Float3 velocity;         ///< over the last frame
+        float stiffness = 1.0f;  ///< of the strand, as StrandsView has it
     };
     struct Substep;
     ProjectiveEquations() = default;

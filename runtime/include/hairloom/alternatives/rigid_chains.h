@@ -64,8 +64,9 @@ class RigidChains {
   private:
     struct Root {
         RootFrame rest, now;
-        Float3 velocity;  ///< over the last frame
-        Float3 turning;   ///< 1/s, over the last substep, world axes
+        Float3 velocity;         ///< over the last frame
+        Float3 turning;          ///< 1/s, over the last substep, world axes
+        float stiffness = 1.0f;  ///< of the strand, as StrandsView has it
     };
     /// A segment, kept with its outer point.
     struct Segment {
