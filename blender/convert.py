@@ -46,6 +46,7 @@ CURVE_TYPES = {
     "colour": "FLOAT_VECTOR",
     "dye": "FLOAT",
     "melanin": "FLOAT",
+    "stiffness": "FLOAT",
 }
 UNSIGNED = {"id", "group", "layer"}
 # What the two call differently.

@@ -3,17 +3,14 @@
 
 #include "cli/documents.h"
 #include "core/base/log.h"
+#include "core/simulation/scene_input.h"
 #include "hairloom/stable.h"
 
 namespace hairloom::cli {
 
 Report adviceReport(const Groom& groom, float frameTime) {
-    const auto positions = groom.positions();
-    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
-    runtime::StrandsView strands;
-    strands.offsets = groom.offsets.view();
-    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
-    const runtime::StableAdvice advice = runtime::adviseStability(strands, groom.simulation, frameTime);
+    const runtime::StableAdvice advice =
+        runtime::adviseStability(strandsAtRest(groom), groom.simulation, frameTime);
     if (advice.words.empty()) return {};
     Report offers = Report::array();
     std::string remedies;

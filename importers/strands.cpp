@@ -10,6 +10,7 @@
 
 #include "core/base/hash.h"
 #include "core/groom/strand_subset.h"
+#include "hairloom/strands.h"
 #include "importers/attribute_units.h"
 #include "importers/foreign_reader.h"
 #include "importers/raw_strands.h"
@@ -229,6 +230,10 @@ AttributeData dataOf(RawAttribute& attribute) {
 /// Whether the values are what Hairloom itself means by the name.
 bool isAsMeantHere(const RawAttribute& attribute) {
     const bool isNumber = attribute.type == RawAttribute::Type::Number;
+    if (attribute.name == attribute::kStiffness) {
+        const auto isFactor = [](float value) { return value >= 0 && value <= runtime::kMostStiffness; };
+        return isNumber && attribute.components == 1 && std::ranges::all_of(attribute.numbers, isFactor);
+    }
     if (attribute.name == attribute::kTransparency || attribute.name == attribute::kDye ||
         attribute.name == attribute::kMelanin)
         return isNumber && attribute.components == 1;
@@ -249,7 +254,7 @@ std::string importedName(const RawAttribute& attribute) {
         attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kRootUv, attribute::kFrozen,
         attribute::kSelected,     attribute::kHidden,          attribute::kLayer,  attribute::kStrandColour,
         attribute::kDye,          attribute::kMelanin,         attribute::kGroup,  attribute::kGuide,
-        attribute::kStrandId};
+        attribute::kStiffness,    attribute::kStrandId};
     const auto among = [&](const auto& names) {
         return std::ranges::find(names, attribute.name) != names.end();
     };

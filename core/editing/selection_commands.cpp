@@ -13,6 +13,7 @@
 #include "core/editing/settings_commands.h"
 #include "core/groom/white_strands.h"
 #include "core/operations/mask.h"
+#include "hairloom/strands.h"
 
 namespace hairloom::editing {
 namespace {
@@ -156,17 +157,31 @@ std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::
     });
 }
 
-std::unique_ptr<Command> setMelanin(const Model& model, std::span<const float> values) {
+namespace {
+
+/// What strands have of a strand attribute of that name, or none; the step of a script has its name, too.
+std::unique_ptr<Command> setFactors(const Model& model, std::string_view attribute, const char* title,
+                                    std::span<const float> values) {
     auto recorded = nlohmann::ordered_json::array();
     for (const float value : values) recorded.push_back(readableDecimal(value));
     Groom groom = model.groom;
     if (values.empty()) {
-        groom.strandAttributes.erase(attribute::kMelanin);
+        groom.strandAttributes.erase(attribute);
     } else {
-        groom.strandAttributes.set(attribute::kMelanin, std::vector<float>(values.begin(), values.end()));
+        groom.strandAttributes.set(attribute, std::vector<float>(values.begin(), values.end()));
     }
-    return replaceGroom(model, std::move(groom), "Melanin",
-                        recordOf("melanin", {{"values", std::move(recorded)}}));
+    return replaceGroom(model, std::move(groom), title,
+                        recordOf(attribute, {{"values", std::move(recorded)}}));
+}
+
+}  // namespace
+
+std::unique_ptr<Command> setMelanin(const Model& model, std::span<const float> values) {
+    return setFactors(model, attribute::kMelanin, "Melanin", values);
+}
+
+std::unique_ptr<Command> setStiffness(const Model& model, std::span<const float> values) {
+    return setFactors(model, attribute::kStiffness, "Stiffness", values);
 }
 
 // --- As operations of a script ---
@@ -226,22 +241,30 @@ MakeCommand readMaskValues(JsonReader& reader) {
     };
 }
 
-MakeCommand readMelanin(JsonReader& reader) {
+template <auto set>
+MakeCommand readFactors(JsonReader& reader, const char* what, float most) {
     std::vector<float> values;
-    for (const double value : reader.numbers("values", 0, kMostMelanin, kMaxNumbers))
+    for (const double value : reader.numbers("values", 0, most, kMaxNumbers))
         values.push_back(static_cast<float>(value));
-    return [values](const Document& document) -> CommandResult {
+    return [values, what](const Document& document) -> CommandResult {
         const std::size_t strands = document.groom().strandCount();
         if (!values.empty() && values.size() != strands)
-            return fail(fmt::format("{} values of melanin", values.size()),
+            return fail(fmt::format("{} values of {}", values.size(), what),
                         fmt::format("one for each of {} strands, or none", strands));
-        return setMelanin(document.model(), values);
+        return set(document.model(), values);
     };
+}
+
+MakeCommand readMelanin(JsonReader& reader) {
+    return readFactors<setMelanin>(reader, "melanin", kMostMelanin);
+}
+MakeCommand readStiffness(JsonReader& reader) {
+    return readFactors<setStiffness>(reader, "stiffness", runtime::kMostStiffness);
 }
 
 constexpr RecordedOperation kSelectionCommandsRecords[] = {
     {"strands", readStrands}, {"scalp", readScalp},     {"density", readDensity},
-    {"mask", readMaskValues}, {"melanin", readMelanin},
+    {"mask", readMaskValues}, {"melanin", readMelanin}, {"stiffness", readStiffness},
 };
 
 }  // namespace

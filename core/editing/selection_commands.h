@@ -38,5 +38,7 @@ std::unique_ptr<Command> setDensity(const Model& model, std::span<const float> d
 std::unique_ptr<Command> setMask(const Model& model, std::uint32_t number, std::span<const float> values);
 /// One value in [0, kMostMelanin] for each strand; empty: strands have the melanin of their material.
 std::unique_ptr<Command> setMelanin(const Model& model, std::span<const float> values);
+/// One value in [0, runtime::kMostStiffness] for each strand; empty: strands have that of the settings.
+std::unique_ptr<Command> setStiffness(const Model& model, std::span<const float> values);
 
 }  // namespace hairloom::editing

@@ -108,13 +108,16 @@ AttributeSet inheritedStrandData(const Groom& groom, const Plan& plan) {
     return data;
 }
 
-/// Strands without neighbours have the pigment of their material: none at all would be white.
-void pigment(const Plan& plan, AttributeSet& data) {
-    if (!data.has(attribute::kMelanin)) return;
-    std::vector<float>& melanin = data.edit<float>(attribute::kMelanin);
-    melanin.resize(plan.count(), 1);
-    for (std::size_t k = 0; k < plan.count(); ++k) {
-        if (plan.neighbours[k].empty()) melanin[k] = 1;
+/// Strands without neighbours have the pigment of their material and the stiffness of the settings: none at
+/// all would be white, and limp.
+void setFactors(const Plan& plan, AttributeSet& data) {
+    for (const std::string_view name : {attribute::kMelanin, attribute::kStiffness}) {
+        if (!data.has(name)) continue;
+        std::vector<float>& factors = data.edit<float>(name);
+        factors.resize(plan.count(), 1);
+        for (std::size_t k = 0; k < plan.count(); ++k) {
+            if (plan.neighbours[k].empty()) factors[k] = 1;
+        }
     }
 }
 
@@ -237,7 +240,7 @@ TakenStrands makeStrands(const Groom& groom, const RootGrid& grid, std::span<con
     strands.pointData.set(attribute::kPosition, std::move(positions));
     taper(groom, plan, strands.pointData);
     bindRoots(groom, roots, strands.strandData);
-    pigment(plan, strands.strandData);
+    setFactors(plan, strands.strandData);
     return strands;
 }
 

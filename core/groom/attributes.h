@@ -45,6 +45,8 @@ inline constexpr std::string_view kLayer = "layer";          ///< uint32, index 
 inline constexpr std::string_view kStrandColour = "colour";  ///< float3, linear RGB in [0, 1]
 inline constexpr std::string_view kDye = "dye";          ///< float in [0, 1], how much of the material's dye
 inline constexpr std::string_view kMelanin = "melanin";  ///< float in [0, 8], times the material's melanin
+/// float in [0, runtime::kMostStiffness], times the bending and torsional stiffness of the settings
+inline constexpr std::string_view kStiffness = "stiffness";
 /// float, of strands: how much the bone of the name behind it moves the root.
 inline constexpr std::string_view kBoneWeightPrefix = "bone_weight_";
 inline constexpr std::string_view kStrandId = "id";  ///< uint32, kept while strands come and go

@@ -22,7 +22,7 @@ constexpr std::array<KnownAttribute, 7> kPointTypes = {{{attribute::kPosition, "
                                                         {attribute::kWidthChange, "float"},
                                                         {attribute::kPointColour, "float3"},
                                                         {attribute::kTransparency, "float"}}};
-constexpr std::array<KnownAttribute, 13> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
+constexpr std::array<KnownAttribute, 14> kStrandTypes = {{{attribute::kRootTriangle, "uint32"},
                                                           {attribute::kRootBarycentric, "float3"},
                                                           {attribute::kRootUv, "float2"},
                                                           {attribute::kGroup, "uint32"},
@@ -34,6 +34,7 @@ constexpr std::array<KnownAttribute, 13> kStrandTypes = {{{attribute::kRootTrian
                                                           {attribute::kStrandColour, "float3"},
                                                           {attribute::kDye, "float"},
                                                           {attribute::kMelanin, "float"},
+                                                          {attribute::kStiffness, "float"},
                                                           {attribute::kStrandId, "uint32"}}};
 
 bool findOffsets(const Groom& groom, std::vector<Finding>& findings) {

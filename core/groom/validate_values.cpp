@@ -7,6 +7,7 @@
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/groom/white_strands.h"
+#include "hairloom/strands.h"
 
 namespace hairloom {
 namespace {
@@ -135,6 +136,17 @@ void findMelanin(const Groom& groom, std::vector<Finding>& findings) {
                   "set the melanin again");
 }
 
+void findStiffness(const Groom& groom, std::vector<Finding>& findings) {
+    const auto stiffness = groom.strandAttributes.view<float>(attribute::kStiffness);
+    Places places;
+    for (std::size_t s = 0; s < stiffness.size(); ++s) {
+        if (!(stiffness[s] >= 0 && stiffness[s] <= runtime::kMostStiffness)) places.strand(s);
+    }
+    places.report(findings, Severity::Error,
+                  fmt::format("the stiffness of strands is not from 0 to {}", runtime::kMostStiffness),
+                  "set the stiffness again");
+}
+
 void findTriangleBindings(const Groom& groom, std::span<const SurfacePoint> roots,
                           std::vector<Finding>& findings) {
     std::vector<std::uint8_t> selected(groom.scalp->triangleCount(), groom.scalpSelection.empty() ? 1 : 0);
@@ -180,6 +192,7 @@ void findGeometry(const Groom& groom, std::vector<Finding>& findings) {
     findDensities(groom, findings);
     findDye(groom, findings);
     findMelanin(groom, findings);
+    findStiffness(groom, findings);
 }
 
 void findBinding(const Groom& groom, std::vector<Finding>& findings) {

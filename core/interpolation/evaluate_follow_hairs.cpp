@@ -144,7 +144,7 @@ Result<Groom> bakeFollowHairs(const Groom& groom, const FollowBindings& bindings
         for (float& dye : dyes) dye = std::clamp(dye, 0.0f, 1.0f);
         baked.pointAttributes.set(attribute::kPointDye, std::move(dyes));
     }
-    for (const std::string_view name : {attribute::kDye, attribute::kMelanin}) {
+    for (const std::string_view name : {attribute::kDye, attribute::kMelanin, attribute::kStiffness}) {
         auto values = followHairRootValues(bindings, groom.strandAttributes.view<float>(name));
         if (!values.empty()) baked.strandAttributes.set(name, std::move(values));
     }

@@ -89,6 +89,7 @@ Groom holdingItsShape(const Groom& groom) {
 
 std::vector<SaggingStrand> strandsThatSag(const Groom& groom, const Sag& sag, double limitMm) {
     std::vector<SaggingStrand> strands;
+    const auto stiffness = groom.strandAttributes.view<float>(attribute::kStiffness);
     const std::vector<CollisionSphere> spheres = pushingSpheres(groom);
     const ColliderDistance distance(spheres);
     const bool limp = !(runtime::greatestStiffness(groom.simulation) > 0);
@@ -97,7 +98,7 @@ std::vector<SaggingStrand> strandsThatSag(const Groom& groom, const Sag& sag, do
         if (!(mm > limitMm)) continue;
         const float depth = depthOf(groom, distance, s);
         std::string reason = "the strand does not carry its weight";
-        if (limp) {
+        if (limp || (!stiffness.empty() && !(stiffness[s] > 0))) {
             reason = "its stiffness is zero";
         } else if (depth > 0) {
             reason = "it is inside a collision sphere or capsule, which pushes it out";

@@ -37,6 +37,16 @@ runtime::Vector<std::uint8_t> skinSpheresOf(const Groom& groom) {
     return runtime::spheresOfSkin(*groom.body, spheresAt(groom.spheres, {}), capsulesOf(groom.spheres));
 }
 
+runtime::StrandsView strandsAtRest(const Groom& groom) {
+    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
+    const auto positions = groom.positions();
+    runtime::StrandsView strands;
+    strands.offsets = groom.offsets.view();
+    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
+    strands.stiffness = groom.strandAttributes.view<float>(attribute::kStiffness);
+    return strands;
+}
+
 runtime::BonePose toBonePose(const Eigen::Affine3f& m) {
     const Mat3f linear = m.linear();
     return {toFloat3(linear.col(0)), toFloat3(linear.col(1)), toFloat3(linear.col(2)),
@@ -73,12 +83,7 @@ void SceneInput::setSpheres(std::vector<CollisionSphere> spheres, bool atRest) {
 }
 
 runtime::StrandsView SceneInput::strands() const {
-    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
-    const auto positions = groom_.positions();
-    runtime::StrandsView strands;
-    strands.offsets = groom_.offsets.view();
-    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
-    return strands;
+    return strandsAtRest(groom_);
 }
 
 std::vector<Eigen::Isometry3f> SceneInput::rootTransforms(const HeadPose& pose) const {

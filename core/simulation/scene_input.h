@@ -15,6 +15,9 @@ std::vector<runtime::Sphere> spheresAt(std::span<const CollisionSphere> spheres,
 /// Which of the groom's spheres stand for its skin collider; empty without one.
 runtime::Vector<std::uint8_t> skinSpheresOf(const Groom& groom);
 
+/// The groom's strands at rest; lives as long as its arrays.
+runtime::StrandsView strandsAtRest(const Groom& groom);
+
 runtime::BonePose toBonePose(const Eigen::Affine3f& m);
 /// Of the groom's body in a pose, as FrameInput::body_ws takes them. Empty: there is none, or the pose moves
 /// the head by bones that it does not tell.

@@ -7,6 +7,7 @@
 
 #include "core/editing/document.h"
 #include "core/editing/settings_commands.h"
+#include "core/simulation/scene_input.h"
 #include "editor/style/theme.h"
 
 namespace hairloom::editor {
@@ -16,12 +17,7 @@ constexpr float kFrameTime = 1.0f / 60.0f;
 constexpr int kMinShown = 3;  // of 100, so that the colour of a margin that is used up is seen
 
 runtime::StableAdvice adviceFor(const Groom& groom) {
-    static_assert(sizeof(Vec3f) == sizeof(runtime::Float3));
-    const auto positions = groom.positions();
-    runtime::StrandsView strands;
-    strands.offsets = groom.offsets.view();
-    strands.restPositions_ss = {reinterpret_cast<const runtime::Float3*>(positions.data()), positions.size()};
-    return runtime::adviseStability(strands, groom.simulation, kFrameTime);
+    return runtime::adviseStability(strandsAtRest(groom), groom.simulation, kFrameTime);
 }
 
 }  // namespace

@@ -182,6 +182,12 @@ std::vector<Action> actions() {
                  if (m.groom.strandAttributes.has(attribute::kMelanin) && r.below(2) == 0) values.clear();
                  return setMelanin(m, values);
              }},
+            {"SetStiffness",
+             [](const Model& m, Random& r) {
+                 std::vector<float> values(m.groom.strandCount(), 4 * r.uniform());
+                 if (m.groom.strandAttributes.has(attribute::kStiffness) && r.below(2) == 0) values.clear();
+                 return setStiffness(m, values);
+             }},
             {"Place", [](const Model& m, Random& r) -> std::unique_ptr<Command> {
                  PlaceRequest request;
                  if (r.below(2) == 0) {
@@ -343,6 +349,9 @@ TEST(Records, NameWhatIsWrong) {
     EXPECT_THAT(problem(R"({"op": "melanin", "values": [1]})"), HasSubstr("1 values of melanin"));
     EXPECT_THAT(problem(R"({"op": "melanin", "values": [9]})"), HasSubstr("from 0 to 8"));
     EXPECT_EQ(problem(R"({"op": "melanin", "values": []})"), "it ran");
+    EXPECT_THAT(problem(R"({"op": "stiffness", "values": [1]})"), HasSubstr("1 values of stiffness"));
+    EXPECT_THAT(problem(R"({"op": "stiffness", "values": [1001]})"), HasSubstr("from 0 to 1000"));
+    EXPECT_EQ(problem(R"({"op": "stiffness", "values": []})"), "it ran");
     EXPECT_THAT(problem(R"({"op": "layers", "layers": []})"), HasSubstr("0 layers"));
     EXPECT_THAT(problem(R"({"op": "material", "settings": {"specular": 9}})"),
                 HasSubstr("/operations/0/settings/specular is 9"));

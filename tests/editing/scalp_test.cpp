@@ -126,7 +126,7 @@ TEST(Place, FillsTheSelectionOfAnEmptyDocument) {
     }
 }
 
-TEST(Place, NewHairHasTheMelaninOfItsNeighboursOrOfTheMaterial) {
+TEST(Place, NewHairHasMelaninAndStiffnessOfItsNeighboursOrAsSet) {
     Groom groom;
     groom.scalp = sphereScalp(kHeadRadius, 4, kHeadCentre);
     groom.scalpSelection = selectFaces(*groom.scalp, "cap:80").value();
@@ -135,12 +135,16 @@ TEST(Place, NewHairHasTheMelaninOfItsNeighboursOrOfTheMaterial) {
     document.perform(place(document.groom(), {}, {}).value());
     for (const auto& [reach, expected] : {std::pair(0.0f, 1.0f), std::pair(0.2f, 0.25f)}) {
         document.perform(setMelanin(document.model(), std::vector<float>(200, 0.25f)));
+        document.perform(setStiffness(document.model(), std::vector<float>(200, 0.25f)));
         PlaceRequest request;
         request.reach = reach;
         document.perform(place(document.groom(), request, {}).value());
-        const auto melanin = document.groom().strandAttributes.view<float>(attribute::kMelanin);
-        ASSERT_EQ(melanin.size(), document.groom().strandCount());
-        for (const float value : melanin) ASSERT_EQ(value, expected);
+        for (const std::string_view name : {attribute::kMelanin, attribute::kStiffness}) {
+            const auto values = document.groom().strandAttributes.view<float>(name);
+            ASSERT_EQ(values.size(), document.groom().strandCount());
+            for (const float value : values) ASSERT_EQ(value, expected) << name;
+        }
+        document.undo();
         document.undo();
     }
 }
