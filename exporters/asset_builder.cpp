@@ -163,6 +163,7 @@ std::vector<std::byte> AssetBuilder::finish(const Box3f& bounds, std::uint32_t p
                    : has(asset::kMaterials) ? asset::kMinorOfMaterials
                    : has(asset::kClip)      ? asset::kMinorOfClips
                                             : asset::kMinor;
+    header.minor = std::max(header.minor, needed_);
     header.headerBytes = sizeof header;
     header.sections = static_cast<std::uint32_t>(parts_.size());
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -2,6 +2,7 @@
 #pragma once
 // Puts a runtime asset together (hairloom/asset_format.h).
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,8 @@ class AssetBuilder {
         if (!records.empty()) addBytes(kind, std::as_bytes(records), sizeof(Record), records.size(), flags);
     }
     asset::Text text(std::string_view words);
+    /// The file states at least this minor version, which its sections alone do not tell.
+    void needMinor(std::uint16_t minor) { needed_ = std::max(needed_, minor); }
 
     /// "GROUP.NAME" of each of the fields.
     template <class S>
@@ -78,6 +81,7 @@ class AssetBuilder {
     std::vector<char> text_;
     std::vector<asset::Setting> settings_;
     std::vector<double> values_;
+    std::uint16_t needed_ = asset::kMinor;
 };
 
 }  // namespace hairloom

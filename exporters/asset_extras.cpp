@@ -5,8 +5,12 @@
 #include <array>
 #include <type_traits>
 
+#include "hairloom/strands.h"
+
 namespace hairloom {
 namespace {
+
+static_assert(attribute::kStiffness == asset::kStiffnessName);
 
 bool isCarriedOtherwise(std::string_view name) {
     constexpr std::array kOthers{attribute::kRootTriangle, attribute::kRootBarycentric, attribute::kSelected,
@@ -82,6 +86,10 @@ void addAttributes(const Groom& groom, const PreparedStrands& strands, AssetBuil
             },
             data);
     }
+    const auto stiffness = groom.strandAttributes.view<float>(attribute::kStiffness);
+    const auto isFactor = [](float value) { return value >= 0 && value <= runtime::kMostStiffness; };
+    if (!stiffness.empty() && std::ranges::all_of(stiffness, isFactor))
+        builder.needMinor(asset::kMinorOfStiffness);
     builder.add<asset::Attribute>(asset::kAttributes, sections.records);
     builder.add<std::byte>(asset::kAttributeValues, sections.values);
 }

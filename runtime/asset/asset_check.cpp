@@ -263,6 +263,16 @@ Problem Asset::checkAttributes() const {
         if (attribute.firstByte % 4 != 0 || attribute.firstByte > room ||
             bytesOf(attribute) * strands.size() > room - attribute.firstByte)
             return wrong("whose values are not in the file");
+        if (minor() < kMinorOfStiffness || nameOf(attribute) != kStiffnessName) continue;
+        if (attribute.type != AttributeType::float32 || attribute.components != 1)
+            return wrong("'stiffness' that is not one float32 of each strand");
+        const float* const factors = reinterpret_cast<const float*>(valuesOf(attribute).data());
+        for (std::size_t s = 0; s < strands.size(); ++s) {
+            if (!(factors[s] >= 0 && factors[s] <= kMostStiffness))
+                return damaged(placeOf(factors + s), "a stiffness of strand " + number(s) + " that is " +
+                                                         std::to_string(factors[s]) + "; expected 0 to " +
+                                                         number(static_cast<std::size_t>(kMostStiffness)));
+        }
     }
     return std::nullopt;
 }

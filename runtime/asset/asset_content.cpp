@@ -151,6 +151,12 @@ const Attribute* Asset::findAttribute(std::string_view name) const {
     return found == all.end() ? nullptr : &*found;
 }
 
+std::span<const float> Asset::strandStiffness() const {
+    const Attribute* const attribute = minor() < kMinorOfStiffness ? nullptr : findAttribute(kStiffnessName);
+    if (!attribute) return {};
+    return {reinterpret_cast<const float*>(valuesOf(*attribute).data()), strands.size()};
+}
+
 BodyFieldRead Asset::readBody() const {
     const std::span<const std::byte> bytes = body();
     return bodyFieldFromBytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});

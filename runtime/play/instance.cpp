@@ -41,7 +41,8 @@ std::size_t bytesOf(const Engine& engine) {
 
 Instance::Result Instance::make(const Asset& asset, bool wantsHairs, bool wantsLevels, Host host) {
     Asset::Strands strands = asset.strandsAtRest();
-    Engine::Result made = Engine::make({strands.offsets, strands.positions_ss}, asset.simulation(), host);
+    Engine::Result made = Engine::make(
+        {strands.offsets, strands.positions_ss, {}, {}, asset.strandStiffness()}, asset.simulation(), host);
     if (!made.engine) return {std::nullopt, std::move(made.error)};
     Instance instance(std::move(*made.engine), RootPoses(asset, strands), std::move(host));
     instance.asset_ = numberOf(asset);

@@ -33,11 +33,16 @@ Instance::Levels::Levels() = default;
 void Instance::makeLevels(const Asset& asset, const Asset::Strands& strands) {
     auto set = makeShared<LevelSet>(strands);
     levels_.emplace();
+    const std::span<const float> stiffness = asset.strandStiffness();
+    Vector<float> ofGuides;
     for (const Level& level : set->coarser) {
+        ofGuides.clear();
+        for (const std::uint32_t guide : level.guides)
+            if (!stiffness.empty()) ofGuides.push_back(stiffness[guide]);
         SimulationSettings settings = asset.simulation();
         settings.substeps = level.substepsUnder(settings);
-        levels_->engines.push_back(
-            std::move(*Engine::make({level.offsets, level.positions_ss}, settings, host_).engine));
+        levels_->engines.push_back(std::move(
+            *Engine::make({level.offsets, level.positions_ss, {}, {}, ofGuides}, settings, host_).engine));
         if (body_) levels_->engines.back().setBody(body_);
         levels_->engines.back().setSkinSpheres(skinSpheres_);
     }

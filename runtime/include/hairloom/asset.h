@@ -97,6 +97,8 @@ class Asset {
     std::span<const std::byte> valuesOf(const asset::Attribute& attribute) const;
     /// Null where there is none of that name.
     const asset::Attribute* findAttribute(std::string_view name) const;
+    /// StrandsView::stiffness, of each strand; none.
+    std::span<const float> strandStiffness() const;
 
     /// Which guides follow hairs take part of, by their numbers among the strands. Of an asset that has
     /// hairs.

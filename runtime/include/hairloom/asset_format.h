@@ -26,6 +26,10 @@ inline constexpr std::uint16_t kMinorOfClips = 3;
 inline constexpr std::uint16_t kMinorOfMaterials = 4;
 /// Written where there are poses.
 inline constexpr std::uint16_t kMinorOfPoses = 5;
+/// Written where strands have a stiffness of their own: an attribute of that name, of one float32 from 0 to
+/// kMostStiffness, StrandsView::stiffness. In files of before, the name means nothing.
+inline constexpr std::uint16_t kMinorOfStiffness = 6;
+inline constexpr std::string_view kStiffnessName = "stiffness";
 /// Sections begin at multiples of it, and so does the memory that the file lies in.
 inline constexpr std::size_t kAlignment = 16;
 inline constexpr std::uint32_t kMaxSections = 4096;
