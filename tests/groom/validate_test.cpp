@@ -82,6 +82,12 @@ std::vector<Broken> brokenGrooms() {
              g.strandAttributes.edit<float>(attribute::kDye)[3] = 1.5f;
          },
          error, "dye mask", "strand 3"},
+        {"Stiffness",
+         [](Groom& g) {
+             g.strandAttributes.set(attribute::kStiffness, std::vector<float>(g.strandCount(), 1000.0f));
+             g.strandAttributes.edit<float>(attribute::kStiffness)[3] = 1001;
+         },
+         error, "stiffness of strands is not from 0 to 1000", "strand 3"},
         {"RepeatedId",
          [](Groom& g) { g.strandAttributes.edit<std::uint32_t>(attribute::kStrandId)[4] = 101; }, error,
          "same id", "id 101"},

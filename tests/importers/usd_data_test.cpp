@@ -68,6 +68,20 @@ TEST(Usd, StageTransformsAttributesAndIndices) {
     EXPECT_THAT(imported->warnings.front().what, HasSubstr("2 time samples"));
 }
 
+TEST(Usd, AStiffnessThatCannotBeOursKeepsItsNumbersUnderAnotherName) {
+    for (const auto& [values, taken] : {std::pair("[0, 12.5]", true), {"[0.5, 40000]", false}}) {
+        std::string stage = kStage;
+        stage.insert(stage.find("        float[] primvars:wet"),
+                     std::string("        float[] primvars:stiffness = ") + values +
+                         " (interpolation = \"uniform\")\n");
+        const auto imported = readText(stage);
+        ASSERT_TRUE(imported) << imported.error().message();
+        const AttributeSet& attributes = imported->groom.strandAttributes;
+        EXPECT_EQ(attributes.has(attribute::kStiffness), taken) << values;
+        EXPECT_EQ(attributes.view<float>(taken ? attribute::kStiffness : "stiffness_of_file").size(), 2u);
+    }
+}
+
 TEST(Usd, StrandsThatMoveGiveTheirFrames) {
     StrandImportOptions options;
     options.frames = true;
