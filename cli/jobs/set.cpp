@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 #include <tuple>
 
@@ -12,14 +13,15 @@
 #include "cli/outputs.h"
 #include "core/base/content_kind.h"
 #include "core/base/file.h"
-#include "core/documents/dye_mask.h"
 #include "core/documents/hair_preset.h"
 #include "core/documents/look_presets.h"
 #include "core/documents/motions.h"
+#include "core/documents/strand_values.h"
 #include "core/groom/file/project_file.h"
 #include "core/groom/file/settings_json.h"
 #include "core/operations/full_head.h"
 #include "hairloom/presets.h"
+#include "hairloom/strands.h"
 
 namespace hairloom::cli {
 namespace {
@@ -34,6 +36,11 @@ struct SetOptions {
     std::string dyeAttribute;
     std::string melaninImage;
     std::string melaninAttribute;
+    std::string stiffnessImage;
+    std::string stiffnessMask;
+    std::string stiffnessAttribute;
+    std::vector<float> stiffnessRange;
+    bool evenStiffness = false;
     std::string character;
     std::string output;
     bool fill = false;
@@ -101,6 +108,9 @@ std::vector<std::string> presetNames() {
 }
 
 Result<Report> set(const SetOptions& options) {
+    if (!options.stiffnessRange.empty() && options.stiffnessImage.empty() && options.stiffnessMask.empty())
+        throw WrongUsage("--stiffness-range has no image or mask",
+                         "expected --stiffness-image or --stiffness-mask");
     auto groom = openGroom(options.input);
     if (!groom) return tl::unexpected(groom.error());
     std::size_t changed = 0;
@@ -132,15 +142,28 @@ Result<Report> set(const SetOptions& options) {
     if (!applied && isWrongForAnyGroom(assignments)) throw WrongUsage(applied.error());
     if (!applied) return tl::unexpected(inFile(applied.error(), options.input));
     changed += *applied;
-    const std::tuple<const std::string&, Status (*)(const std::string&, Groom&)> sources[] = {
+    StiffnessRange range;
+    if (!options.stiffnessRange.empty()) range = {options.stiffnessRange[0], options.stiffnessRange[1]};
+    const auto ranged = [&range](Status (*take)(const std::string&, const StiffnessRange&, Groom&)) {
+        return [&range, take](const std::string& source, Groom& into) { return take(source, range, into); };
+    };
+    const std::tuple<const std::string&, std::function<Status(const std::string&, Groom&)>> sources[] = {
         {options.dyeImage, dyeFromImage},
         {options.dyeAttribute, dyeFromAttribute},
         {options.melaninImage, melaninFromImage},
-        {options.melaninAttribute, melaninFromAttribute}};
+        {options.melaninAttribute, melaninFromAttribute},
+        {options.stiffnessImage, ranged(stiffnessFromImage)},
+        {options.stiffnessMask, ranged(stiffnessFromMask)},
+        {options.stiffnessAttribute, stiffnessFromAttribute}};
     for (const auto& [source, take] : sources) {
         if (source.empty()) continue;
-        if (auto status = take(source, *groom); !status) return tl::unexpected(status.error());
+        if (auto status = take(source, *groom); !status)
+            return tl::unexpected(inFile(status.error(), options.input));
         ++changed;
+    }
+    if (options.evenStiffness) {
+        changed += groom->strandAttributes.has(attribute::kStiffness) ? 1 : 0;
+        groom->strandAttributes.erase(attribute::kStiffness);
     }
     if (!options.character.empty()) {
         // Read now, so that no project names what is no head.
@@ -185,6 +208,33 @@ Result<Report> list() {
     return Report{{"fields", std::move(rows)}, {"presets", presetRows()}, {"looks", lookRows()}};
 }
 
+void addStiffness(CLI::App& job, SetOptions& options) {
+    auto* image = job.add_option("--stiffness-image", options.stiffnessImage,
+                                 "PNG at the root UVs. Black and white stand for --stiffness-range");
+    auto* mask = job.add_option("--stiffness-mask", options.stiffnessMask,
+                                "Painted mask, by its name or number, in place of an image")
+                     ->excludes(image);
+    auto* attribute =
+        job.add_option("--stiffness-attribute", options.stiffnessAttribute,
+                       fmt::format("Strand attribute of numbers from 0 to {} that multiply the stiffness of "
+                                   "the settings",
+                                   runtime::kMostStiffness))
+            ->excludes(image)
+            ->excludes(mask);
+    job.add_option("--stiffness-range", options.stiffnessRange,
+                   "BLACK,WHITE: what black and white of the image or mask multiply the stiffness of the "
+                   "settings by. 0 is limp, gelled hair has more than 1 (default: 0,1)")
+        ->delimiter(',')
+        ->expected(2)
+        ->check(CLI::Range(0.0f, runtime::kMostStiffness))
+        ->excludes(attribute);
+    job.add_flag("--even-stiffness", options.evenStiffness,
+                 "Removes the strands' own stiffness, so that all have that of the settings")
+        ->excludes(image)
+        ->excludes(mask)
+        ->excludes(attribute);
+}
+
 JobRun declare(CLI::App& job) {
     const auto options = std::make_shared<SetOptions>();
     auto* listing =
@@ -221,6 +271,7 @@ JobRun declare(CLI::App& job) {
     job.add_option("--melanin-attribute", options->melaninAttribute,
                    "Strand attribute of numbers from 0 to 8 that multiply the material's melanin")
         ->excludes(melanin);
+    addStiffness(job, *options);
     job.add_option("--character", options->character,
                    "Head file with mesh, skeleton and clips, if the project no longer finds it");
     job.add_option("--from", options->from, "JSON file of sections with fields");

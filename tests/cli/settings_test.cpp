@@ -30,6 +30,54 @@ TEST_F(CliSettings, AStrokeOfDyeIsReplayed) {
     EXPECT_TRUE(runJson("validate dyed.hairloom")["valid"].get<bool>());
 }
 
+TEST_F(CliSettings, StiffnessComesFromAPaintedMaskAndMoves) {
+    runJson(createArguments());
+    std::ofstream(folder / "paint.json") << R"({"hairloom_script": 1, "operations": [
+        {"op": "mask_names", "names": {"1": "Gel"}}, {"op": "stroke", "tool": "mask_paint", "radius": 0.15,
+        "profile": [1, 1], "falloff": [], "dabs": [{"at": [0.15, 1.75, 0], "strength": 1}]}]})";
+    runJson("groom hair.hairloom --script paint.json -o painted.hairloom");
+    EXPECT_EQ(
+        runJson(
+            "set painted.hairloom --stiffness-mask gel --stiffness-range 0.25,8 -o gel.hairloom")["changed"],
+        1);
+    EXPECT_TRUE(runJson("validate gel.hairloom")["valid"].get<bool>());
+    EXPECT_NE(readText(folder / "gel.hairloom").find("\"strand/stiffness\""), std::string::npos);
+    const auto hashOf = [&](const std::string& file) {
+        return runJson("simulate " + file + " --frames 20 --motion nod --engine cpu")["state_hash"];
+    };
+    const auto even = hashOf("painted.hairloom"), gel = hashOf("gel.hairloom");
+    EXPECT_NE(gel, even);
+    // A game's file keeps it.
+    runJson("export gel.hairloom --format runtime -o gel.hairrt");
+    runJson("export painted.hairloom --format runtime -o painted.hairrt");
+    EXPECT_EQ(runJson("info gel.hairrt")["asset"]["version"], "1.6");
+    EXPECT_EQ(runJson("info painted.hairrt")["asset"]["version"], "1.4");
+    EXPECT_NE(hashOf("gel.hairrt"), hashOf("painted.hairrt"));
+    EXPECT_EQ(runJson("set gel.hairloom --even-stiffness -o even.hairloom")["changed"], 1);
+    EXPECT_EQ(hashOf("even.hairloom"), even);
+    EXPECT_EQ(readText(folder / "even.hairloom"), readText(folder / "painted.hairloom"));
+    // From an attribute, as it is.
+    runJson("set gel.hairloom --stiffness-attribute stiffness -o again.hairloom");
+    EXPECT_EQ(readText(folder / "again.hairloom"), readText(folder / "gel.hairloom"));
+
+    const auto refused = [&](const std::string& options, int exitCode, const std::string& words) {
+        const Outcome outcome = run("set painted.hairloom " + options + " -o none.hairloom");
+        EXPECT_EQ(outcome.exitCode, exitCode) << options;
+        EXPECT_THAT(outcome.errors, HasSubstr(words)) << options;
+        EXPECT_FALSE(std::filesystem::exists(folder / "none.hairloom")) << options;
+    };
+    refused("--stiffness-mask Fringe", 1, "Fringe");
+    refused("--stiffness-mask Fringe", 1, "painted.hairloom");
+    refused("--stiffness-mask 2", 1, "nothing is painted in mask 'Mask 2'");
+    refused("--stiffness-attribute depth", 1, "there is no strand attribute 'depth'");
+    refused("--stiffness-image none.png", 1, "none.png");
+    refused("--stiffness-range 1,2", 2, "expected --stiffness-image or --stiffness-mask");
+    refused("--stiffness-mask 1 --stiffness-range 1,1001", 2, "1000");
+    refused("--stiffness-mask 1 --stiffness-range 1,nan", 2, "nan");
+    refused("--stiffness-mask 1 --stiffness-range 1", 2, "stiffness-range");
+    refused("--stiffness-mask 1 --even-stiffness", 2, "even-stiffness");
+}
+
 TEST_F(CliSettings, AFullHeadIsAsDenseAsAPersons) {
     const double area = runJson(createArguments())["scalp_area_cm2"];
     EXPECT_EQ(runJson("set hair.hairloom --full-head -o full.hairloom")["changed"], 2) << "hairs and blend";

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/documents/dye_mask.h"
 #include "core/documents/look_presets.h"
 #include "core/documents/sample.h"
+#include "core/documents/strand_values.h"
 #include "core/groom/file/settings_json.h"
 #include "core/groom/point_dye.h"
 #include "core/interpolation/follow_hairs.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/documents/dye_mask.h"
 #include "core/documents/sample.h"
+#include "core/documents/strand_values.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/point_width.h"
 #include "core/render/png.h"
@@ -306,6 +306,10 @@ TEST(HairLook, AnImageOverTheRootUvsIsAMask) {
     ASSERT_TRUE(melaninFromImage(path.string(), groom));
     EXPECT_NEAR(weightsOfStrands(groom).pigments[1], 128.0f / 255, 2e-3f);
     EXPECT_FALSE(groom.strandAttributes.has(attribute::kDye));
+    ASSERT_TRUE(stiffnessFromImage(path.string(), {0.5f, 8}, groom));
+    const auto stiffness = groom.strandAttributes.view<float>(attribute::kStiffness);
+    EXPECT_NEAR(stiffness[0], 8, 1e-2f);
+    EXPECT_NEAR(stiffness[1], 0.5f + 7.5f * 128 / 255, 1e-2f);
     const auto missing = melaninFromImage(path.string() + ".none", groom);
     ASSERT_FALSE(missing);
     EXPECT_NE(missing.error().message().find(".none"), std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/documents/dye_mask.h"
+#include "core/documents/strand_values.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "core/documents/mask_image.h"
+#include "core/groom/mask_names.h"
 #include "core/groom/point_dye.h"
 #include "core/groom/white_strands.h"
+#include "hairloom/strands.h"
 
 namespace hairloom {
 namespace {
@@ -77,6 +79,38 @@ Status melaninFromAttribute(const std::string& name, Groom& groom) {
     auto values = fromAttribute(name, kMostMelanin, groom);
     if (!values) return tl::unexpected(values.error());
     groom.strandAttributes.set(attribute::kMelanin, std::move(*values));
+    return {};
+}
+
+std::vector<float> stiffnessOfShares(std::span<const float> shares, const StiffnessRange& range) {
+    std::vector<float> values(shares.size());
+    std::ranges::transform(shares, values.begin(),
+                           [&range](float share) { return range.black * (1 - share) + range.white * share; });
+    return values;
+}
+
+Status stiffnessFromImage(const std::string& path, const StiffnessRange& range, Groom& groom) {
+    const auto shares = fromImage(path, groom);
+    if (!shares) return tl::unexpected(shares.error());
+    groom.strandAttributes.set(attribute::kStiffness, stiffnessOfShares(*shares, range));
+    return {};
+}
+
+Status stiffnessFromMask(const std::string& name, const StiffnessRange& range, Groom& groom) {
+    const auto number = findMask(groom, name);
+    if (!number) return tl::unexpected(number.error());
+    const auto shares = groom.strandAttributes.view<float>(maskAttribute(*number));
+    if (shares.empty())
+        return fail(fmt::format("nothing is painted in mask '{}'", maskName(groom, *number)),
+                    "expected a mask that was painted, or filled by an image");
+    groom.strandAttributes.set(attribute::kStiffness, stiffnessOfShares(shares, range));
+    return {};
+}
+
+Status stiffnessFromAttribute(const std::string& name, Groom& groom) {
+    auto values = fromAttribute(name, runtime::kMostStiffness, groom);
+    if (!values) return tl::unexpected(values.error());
+    groom.strandAttributes.set(attribute::kStiffness, std::move(*values));
     return {};
 }
 
