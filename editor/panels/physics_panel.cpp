@@ -12,6 +12,7 @@
 #include "editor/document/words.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/stiffness_curve.h"
+#include "editor/fields/strand_stiffness.h"
 #include "editor/panels/key_this.h"
 #include "editor/panels/panel.h"
 
@@ -109,7 +110,7 @@ QWidget* makeMethods(Player& player) {
 }
 
 QWidget* makePanel(QtDocument& document, const Preferences& preferences, const Prices& prices, Player& player,
-                   Keying& keying) {
+                   Keying& keying, Messages& messages) {
     const std::vector<Field> fields = simulationFields();
     QWidget* const content = column({makePresets(document), makeHoldButton(document)});
     auto* layout = static_cast<QVBoxLayout*>(content->layout());
@@ -120,6 +121,10 @@ QWidget* makePanel(QtDocument& document, const Preferences& preferences, const P
         QWidget* form = new FieldForm(document, preferences, pick(fields, group.fields), &prices, keys);
         if (group.fields.contains("angularStiffness")) form = stacked({new StiffnessCurve(document), form});
         layout->insertWidget(layout->count() - 1, collapsible(group.title, form, group.open));
+        if (group.fields.contains("angularStiffness"))
+            layout->insertWidget(
+                layout->count() - 1,
+                collapsible("Stiffness by region", new StrandStiffness(document, messages), false));
     }
     layout->insertWidget(layout->count() - 1, collapsible("During playback", makeMethods(player), false));
     // Fields that the engine has gained since.
@@ -144,7 +149,8 @@ PanelInfo physicsPanel() {
             60,
             true,
             [](const PanelParts& parts) {
-                return makePanel(parts.document, parts.preferences, parts.prices, parts.player, parts.keying);
+                return makePanel(parts.document, parts.preferences, parts.prices, parts.player, parts.keying,
+                                 parts.messages);
             }};
 }
 

@@ -14,10 +14,13 @@
 #include <string_view>
 
 #include "core/documents/look_presets.h"
+#include "core/editing/document.h"
+#include "core/editing/selection_commands.h"
 #include "core/editing/settings_commands.h"
 #include "core/live/shown.h"
 #include "editor/fields/field_form.h"
 #include "editor/fields/number_box.h"
+#include "editor/fields/number_spin.h"
 #include "editor/fields/price_tag.h"
 #include "editor/look/tress.h"
 #include "editor/style/theme.h"
@@ -271,6 +274,51 @@ TEST_F(LookTest, AnImageGivesStrandsTheirMelaninAndOneClickTakesItAway) {
     document().undo();
     EXPECT_TRUE(isOffered());
     EXPECT_EQ(document().stepCount(), 2);
+}
+
+TEST_F(LookTest, AMaskOrAnImageGivesStrandsTheirStiffnessAndOneClickTakesItAway) {
+    auto* even = find<QPushButton>("evenStiffness");
+    auto* masks = find<QComboBox>("stiffnessMask");
+    const auto isOffered = [&] { return even->isVisibleTo(even->parentWidget()); };
+    EXPECT_FALSE(isOffered());
+    ASSERT_EQ(masks->count(), static_cast<int>(kPaintedMasks));
+    const auto before = hash();
+    ASSERT_FALSE(groom().strandAttributes.has(maskAttribute(4)));
+    masks->setCurrentIndex(3);
+    find<QPushButton>("stiffnessFromMask")->click();
+    EXPECT_EQ(hash(), before);
+    EXPECT_TRUE(window->statusLine().message().contains("Nothing is painted in mask 'Mask 4'"))
+        << window->statusLine().message().toStdString();
+
+    std::vector<float> painted(groom().strandCount(), 0.0f);
+    painted[3] = 1;
+    painted[4] = 0.5f;
+    document().perform(editing::setMask(document().editing().model(), 4, painted));
+    document().perform(editing::setMaskNames(document().editing().model(), {"", "", "", "Gel"}).value());
+    EXPECT_EQ(masks->currentText(), "Gel (4)") << "it stays chosen";
+    const auto masked = hash();
+    find<NumberSpin>("stiffnessBlack")->setValue(0.5);
+    find<NumberSpin>("stiffnessWhite")->setValue(8);
+    EXPECT_EQ(hash(), masked) << "until it is taken";
+    find<QPushButton>("stiffnessFromMask")->click();
+    const auto stiffness = groom().strandAttributes.view<float>(attribute::kStiffness);
+    ASSERT_EQ(stiffness.size(), groom().strandCount());
+    EXPECT_EQ(stiffness[0], 0.5f);
+    EXPECT_EQ(stiffness[3], 8.0f);
+    EXPECT_EQ(stiffness[4], 4.25f);
+    EXPECT_TRUE(isOffered());
+    even->click();
+    EXPECT_EQ(hash(), masked);
+    EXPECT_FALSE(isOffered());
+
+    QImage image(2, 2, QImage::Format_RGB32);
+    image.fill(qRgb(255, 255, 255));
+    ASSERT_TRUE(image.save(inFolder("white.png")));
+    onceAskedForAFile(inFolder("white.png"));
+    find<QPushButton>("stiffnessImage")->click();
+    EXPECT_NEAR(groom().strandAttributes.view<float>(attribute::kStiffness)[0], 8, 1e-2f);
+    document().undo();
+    EXPECT_EQ(hash(), masked);
 }
 
 TEST_F(LookTest, SwappingLooksIsAStep) {
