@@ -27,7 +27,7 @@ StrandStiffness::StrandStiffness(QtDocument& document, Messages& messages, QWidg
     layout->addRow("Black", black_);
     layout->addRow("White", white_);
     mask_->setObjectName("stiffnessMask");
-    mask_->setToolTip("Painted mask of the strands. The brush Mask paints it");
+    mask_->setToolTip("Painted mask of the strands. The brush Paint mask paints it");
     auto* take = new QPushButton("Take mask");
     take->setObjectName("stiffnessFromMask");
     take->setToolTip("Gives each strand its stiffness by the mask. Take it again after you paint");
