@@ -24,8 +24,8 @@ struct ChildLimits {
 };
 
 /// Standard output of `program` run with `arguments`, with `input` on its standard input and its standard
-/// error discarded. Errors: cannot be started, ended by a signal or a status other than 0, over a limit. The
-/// error's text starts with `name` ("the mesh reader"). No process is left behind.
+/// error discarded. Errors: cannot be started, ended by a signal or a status other than 0, over a limit,
+/// checkStop(). The error's text starts with `name` ("the mesh reader"). No process is left behind.
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
                                         const std::vector<std::string>& arguments, const ChildLimits& limits,
                                         std::span<const std::byte> input = {});

@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "core/base/descriptor_posix.h"
+#include "core/base/stop_scope.h"
 #include "importers/child_watch.h"
 
 extern char** environ;
@@ -146,6 +147,7 @@ bool readSome(int descriptor, std::span<std::byte> piece, std::vector<std::byte>
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
                                         const std::vector<std::string>& arguments, const ChildLimits& limits,
                                         std::span<const std::byte> input) {
+    if (auto status = checkStop(); !status) return tl::unexpected(status.error());
     auto spawned = spawn(name, program, arguments, input);
     if (!spawned) return tl::unexpected(spawned.error());
     Child child(spawned->process);

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/stop_scope.h"
 #include "importers/child_watch.h"
 
 namespace hairloom {
@@ -222,6 +223,7 @@ bool readSome(HANDLE pipe, std::vector<std::byte>& output) {
 Result<std::vector<std::byte>> runChild(const std::string& name, const std::filesystem::path& program,
                                         const std::vector<std::string>& arguments, const ChildLimits& limits,
                                         std::span<const std::byte> input) {
+    if (auto status = checkStop(); !status) return tl::unexpected(status.error());
     auto child = spawn(name, program, arguments, limits, input);
     if (!child) return tl::unexpected(child.error());
     const HANDLE process = child->process.get();

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/base/stop_scope.h"
+
 namespace hairloom {
 
 ChildWatch::ChildWatch(std::string name, const ChildLimits& limits,
@@ -17,6 +19,7 @@ ChildWatch::ChildWatch(std::string name, const ChildLimits& limits,
       nextLook_(start_) {}
 
 Status ChildWatch::check(std::size_t outputBytes) {
+    if (auto status = checkStop(); !status) return status;
     const auto now = Clock::now();
     if (now - start_ >= limits_.time) {
         return over(

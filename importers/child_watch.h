@@ -18,7 +18,8 @@ class ChildWatch {
     /// `residentBytes`: memory of the child that is in use; 0 where the system does not tell.
     ChildWatch(std::string name, const ChildLimits& limits, std::function<std::uint64_t()> residentBytes);
 
-    /// Errors: a limit is exceeded, `outputBytes` being what the child has written so far.
+    /// Errors: a limit is exceeded, checkStop() says so, `outputBytes` being what the child has written so
+    /// far.
     Status check(std::size_t outputBytes);
 
   private:

@@ -47,6 +47,10 @@ struct Confinement {
 /// them those layers are missing. Call it before there are threads.
 Confinement confineProcess(const std::filesystem::path& folder, std::uint64_t memoryBytes);
 
+/// From now on the process ends when the one that started it does, however that ends: nobody takes its answer
+/// any more. Call it first. On Windows the parent's job sees to it (child_process.h); elsewhere nothing does.
+void endWithParent();
+
 /// One thing that a confined process must not be able to do, and whether it could.
 struct ConfinementTrial {
     /// "network", "write", "other_files", "stat" (of a file outside), "programs", "signals" (to the process

@@ -4,6 +4,7 @@
 #include <linux/filter.h>
 #include <linux/landlock.h>
 #include <linux/seccomp.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <initializer_list>
 #include <system_error>
@@ -223,6 +225,13 @@ ConfinementLayer limitMemory(std::uint64_t bytes) {
 }
 
 }  // namespace
+
+void endWithParent() {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // The parent may have ended before the kernel heard that; its end of the pipe is closed then.
+    pollfd output{STDOUT_FILENO, 0, 0};
+    if (poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0) _exit(1);
+}
 
 Confinement confineProcess(const std::filesystem::path& folder, std::uint64_t memoryBytes) {
     Confinement confinement;

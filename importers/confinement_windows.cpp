@@ -120,6 +120,8 @@ bool couldTake(std::uint64_t bytes, DWORD protection) {
 
 }  // namespace
 
+void endWithParent() {}
+
 Confinement confineProcess(const std::filesystem::path&, std::uint64_t memoryBytes) {
     using Limits = JOBOBJECT_EXTENDED_LIMIT_INFORMATION;
     Confinement confinement;

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/prctl.h>
@@ -12,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <string>
@@ -68,13 +70,21 @@ int waitFor(pid_t child) {
 /// abort(); the first one waits for it, and goes with its parent.
 ConfinementLayer enterNewest() {
     ConfinementLayer layer{"processes", LayerState::Missing, {}};
-    const pid_t first = fork();
+    std::array<int, 2> ends{-1, -1};
+    const bool hasPipe = pipe2(ends.data(), O_CLOEXEC) == 0;
+    const Descriptor readEnd(ends[0]);
+    Descriptor parentsEnd(ends[1]);
+    const pid_t first = hasPipe ? fork() : -1;
     if (first > 0) endLike(first);
     if (first < 0) {
         layer.why = reason("no process in the new namespace");
         return layer;
     }
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    // The parent may have ended before the kernel heard that, and has no number here to ask for.
+    parentsEnd = Descriptor();
+    pollfd parent{readEnd.number(), POLLIN, 0};
+    if (poll(&parent, 1, 0) > 0) _exit(1);
     const pid_t reader = fork();
     if (reader > 0) _exit(waitFor(reader));
     layer.state = LayerState::Set;

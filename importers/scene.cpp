@@ -10,6 +10,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "core/base/stop_scope.h"
 #include "core/base/utf8.h"
 #include "core/base/write_rules.h"
 #include "importers/child_process.h"
@@ -140,8 +141,10 @@ Result<ImportedScene> finishScene(RawScene raw, MeshFormat format, const MeshImp
     if (auto strange = implausibleSize(metres / scene.metresPerUnit, scene.metresPerUnit)) {
         raw.warnings.push_back(std::move(*strange));
     }
+    if (auto status = checkStop(); !status) return tl::unexpected(status.error());
     auto mesh = ScalpMesh::make(raw.soup);
     if (!mesh) return tl::unexpected(mesh.error());
+    if (auto status = checkStop(); !status) return tl::unexpected(status.error());
     auto skeleton = Skeleton::make(std::move(raw.bones));
     if (!skeleton) return tl::unexpected(skeleton.error());
     scene.mesh = std::move(*mesh);

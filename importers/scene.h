@@ -38,7 +38,7 @@ struct ImportedScene {
 /// (hairloom-mesh-reader, found beside the running program or named by the environment variable
 /// HAIRLOOM_MESH_READER), FBX, glTF and STL within meshLimits(), others within limitsOfFile(). Errors:
 /// missing or unreadable file, no supported format, damaged or too large for these limits, no faces, nothing
-/// left after repair.
+/// left after repair, stopped (core/base/stop_scope.h).
 Result<ImportedScene> importScene(const std::filesystem::path& path, const MeshImportOptions& options = {});
 
 }  // namespace hairloom

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/hash.h"
+#include "core/base/stop_scope.h"
 #include "core/groom/strand_subset.h"
 #include "hairloom/strands.h"
 #include "importers/attribute_units.h"
@@ -417,6 +418,7 @@ Result<ImportedStrands> importRaw(const std::string& file, Result<RawStrands> ra
                                   const StrandImportOptions& asked) {
     if (!raw) return tl::unexpected(raw.error());
     const StrandImportOptions options = stated(*raw, asked);
+    if (auto status = checkStop(); !status) return tl::unexpected(inFile(status.error(), file));
     layersFromParts(*raw);
     Cleaner cleaner(*raw, options);
     cleaner.run();
@@ -437,6 +439,7 @@ Result<ImportedStrands> importRaw(const std::string& file, Result<RawStrands> ra
         if (auto near = checkRootDistance(*raw, *options.scalp, options); !near)
             return tl::unexpected(inFile(near.error(), file));
     }
+    if (auto status = checkStop(); !status) return tl::unexpected(inFile(status.error(), file));
     repairAttributes(*raw);
     if (auto finding = implausibleSize(raw->offsets, raw->positions, options.metresPerUnit)) {
         raw->warnings.push_back(std::move(*finding));

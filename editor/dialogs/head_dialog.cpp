@@ -106,16 +106,19 @@ HeadDialog::HeadDialog(Tasks& tasks, const Preferences& preferences, const QStri
     connect(groups_, &GroupRoles::changed, this, &HeadDialog::refresh);
     connect(spheres_, &QSpinBox::valueChanged, this, &HeadDialog::fit);
     connect(&tasks_, &Tasks::stopped, this, [this] {
+        const bool wasReading = std::exchange(reading_, false);
         fitting_ = false;
+        if (!isRead_ && !wasReading && isVisible()) read();
         if (std::exchange(outdated_, false)) fit();
     });
+    open_->setEnabled(false);
     read();
 }
 
 void HeadDialog::read() {
     summary_->setText("Reading…");
     using Read = std::pair<std::shared_ptr<const ImportedScene>, QString>;
-    tasks_.run<Read>(
+    reading_ = tasks_.run<Read>(
         QString("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_.toStdString()](TaskControl&) -> Result<Read> {
             auto scene = importSceneLoud(path, {});
@@ -124,6 +127,7 @@ void HeadDialog::read() {
         },
         [self = QPointer(this)](const Read& read) {
             if (!self) return;
+            self->isRead_ = true;
             if (read.first) {
                 self->take(read.first);
             } else {
@@ -194,7 +198,7 @@ void HeadDialog::refresh() {
 void HeadDialog::fit() {
     if (fitting_) {
         outdated_ = true;
-        tasks_.cancel();
+        tasks_.drop();
         return;
     }
     const HeadImportOptions wanted = options();
@@ -236,8 +240,8 @@ void HeadDialog::show(const editing::SphereFit& fit) {
 
 void HeadDialog::done(int result) {
     outdated_ = false;
-    if (fitting_) {
-        tasks_.cancel();
+    if (reading_ || fitting_) {
+        reading_ ? tasks_.cancel() : tasks_.drop();
         tasks_.finish();
     }
     QDialog::done(result);

@@ -26,10 +26,11 @@ class HeadDialog : public QDialog {
     /// As chosen; at first as guessed.
     HeadImportOptions options() const;
 
-    /// Also stops what still runs: nothing shows it any more.
+    /// Also stops what still runs: nothing shows it any more. Reading that the user has cancelled is said.
     void done(int result) override;
 
   private:
+    /// Waits while other work runs.
     void read();
     void take(std::shared_ptr<const ImportedScene> scene);
     /// Size and picture of what the options leave, and then the spheres.
@@ -48,6 +49,7 @@ class HeadDialog : public QDialog {
     std::shared_ptr<const ImportedScene> scene_;  ///< as read without options; null until then
     std::shared_ptr<const ScalpMesh> head_;       ///< what the options leave of it
     bool statesUnit_ = false;                     ///< the file does, and it stands
+    bool reading_ = false, isRead_ = false;       ///< the file; isRead_ also where it cannot be
     bool fitting_ = false, outdated_ = false;     ///< what is being fitted serves no more
     QButtonGroup* unit_;
     QButtonGroup* up_;

@@ -5,6 +5,7 @@
 #include <QFormLayout>
 #include <QHBoxLayout>
 #include <QPointer>
+#include <utility>
 
 #include "editor/document/words.h"
 #include "editor/fields/blocks.h"
@@ -127,10 +128,10 @@ void ImportDialog::read() {
     summary_->setText("Reading…");
     take_->setEnabled(false);
     // A later change of the options supersedes what is being read.
-    tasks_.cancel();
+    tasks_.drop();
     tasks_.finish();
     StrandImportOptions wanted = options();
-    tasks_.run<Preview>(
+    reading_ = tasks_.run<Preview>(
         QString("Reading %1").arg(QFileInfo(path_).fileName()),
         [path = path_, wanted, scalp = document_.groom().scalp](TaskControl&) -> Result<Preview> {
             StrandImportOptions onHead = wanted;
@@ -172,7 +173,16 @@ void ImportDialog::read() {
         });
 }
 
+void ImportDialog::done(int result) {
+    if (std::exchange(reading_, false)) {
+        tasks_.cancel();
+        tasks_.finish();
+    }
+    QDialog::done(result);
+}
+
 void ImportDialog::showPreview(Preview preview) {
+    reading_ = false;
     preview_ = std::move(preview.groom);
     summary_->setText(preview.text);
     // Choices that the file does not have are no choices.

@@ -28,6 +28,9 @@ class ImportDialog : public QDialog {
     /// What the file holds with these options; empty before it was read or where it cannot be.
     const Groom& preview() const { return preview_; }
 
+    /// Also stops reading, which the user has cancelled then.
+    void done(int result) override;
+
   private:
     /// What was read, on its way from the task.
     struct Preview {
@@ -51,6 +54,7 @@ class ImportDialog : public QDialog {
     QLabel* summary_;
     StrandPreview* view_;
     QPushButton* take_;
+    bool reading_ = false;
     Groom preview_;
 };
 

@@ -4,6 +4,8 @@
 #include <QMetaObject>
 #include <utility>
 
+#include "core/base/stop_scope.h"
+
 namespace hairloom::editor {
 
 Tasks::Tasks(QObject* parent) : QObject(parent) {}
@@ -20,8 +22,9 @@ bool Tasks::start(const QString& name, std::function<Finish(TaskControl&)> work)
     }
     control_ = std::make_shared<TaskControl>();
     name_ = name;
-    ready_ = false;
+    ready_ = isUsersWish_ = false;
     thread_ = std::thread([this, work = std::move(work), control = control_] {
+        const StopScope scope(*control->cancelFlag());
         finish_ = work(*control);
         ready_ = true;
         QMetaObject::invokeMethod(this, &Tasks::end, Qt::QueuedConnection);
@@ -31,6 +34,11 @@ bool Tasks::start(const QString& name, std::function<Finish(TaskControl&)> work)
 }
 
 void Tasks::cancel() {
+    isUsersWish_ = true;
+    drop();
+}
+
+void Tasks::drop() {
     if (control_) control_->cancel();
 }
 
@@ -39,12 +47,14 @@ void Tasks::finish() {
     thread_.join();
     thread_ = std::thread();
     const Finish finish = std::exchange(finish_, nullptr);
-    const bool dropped = control_->isCancelled();
+    const bool dropped = control_->isCancelled(), isCancelled = dropped && isUsersWish_;
+    const QString name = name_;
     const std::optional<ProcessorWatch> watch = std::exchange(watch_, std::nullopt);
     const double others = watch ? watch->othersShare().value_or(0) : 0;
     control_.reset();
     ready_ = false;
     Q_EMIT stopped();
+    if (isCancelled) Q_EMIT cancelled(name);
     if (!finish || dropped) return;
     finish(*this);
     if (others > kBusyShare)

@@ -72,8 +72,12 @@ class Tasks : public QObject {
         return true;
     }
 
-    /// Asks the work to stop; what it finds is dropped in any case.
+    /// The user wants the work no more: it is asked to stop, what it finds is dropped in any case, and
+    /// cancelled() tells once it has ended. Foreign files that it reads are read no further
+    /// (core/base/stop_scope.h).
     void cancel();
+    /// The same of work that other work takes the place of, or that nobody can see any more: without a word.
+    void drop();
     /// Waits for the work and its `done`; for tests and for leaving the program.
     void finish();
 
@@ -81,6 +85,7 @@ class Tasks : public QObject {
     void started(const QString& name);
     void stopped();
     void failed(const QString& message);
+    void cancelled(const QString& name);
     void disturbed(const QString& warning);
 
   private:
@@ -93,6 +98,7 @@ class Tasks : public QObject {
     QString name_;
     Finish finish_;
     std::atomic<bool> ready_{false};
+    bool isUsersWish_ = false;             ///< that the work stops
     std::optional<ProcessorWatch> watch_;  ///< of work that measures
 };
 

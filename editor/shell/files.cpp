@@ -31,6 +31,7 @@ struct DocumentFiles::Opened {
     std::string record;      ///< of a transfer, for scripts
     float farthest = 0;      ///< metres between a root and the head that it was transferred to
     QString missing;         ///< file of the head that is not there
+    FileVersion version;     ///< of a file that is opened: that which was read
     bool isUnclear = false;  ///< a head whose size, axis or groups look wrong
 };
 
@@ -116,19 +117,30 @@ QString patternsOf(const std::vector<FileFormat>& formats) {
     return patterns.join(' ');
 }
 
-}  // namespace
+bool beginsLikeStrands(const QString& path) {
+    return looksLikeStrandFile(readBeginning(path.toStdString(), 256));
+}
 
-FileKind kindOf(const QString& path) {
+/// Nothing where only the whole file tells.
+std::optional<FileKind> kindByBeginning(const QString& path) {
     const std::string file = path.toStdString();
     if (looksLikeProject(file)) return FileKind::Project;
     const auto mesh = meshFormatOf(readBeginning(file, kMeshFormatHead),
                                    static_cast<std::uint64_t>(QFileInfo(path).size()));
-    const bool isStrands = looksLikeStrandFile(readBeginning(file, 256));
+    const bool isStrands = beginsLikeStrands(path);
     if (mesh && !isStrands && !mayBeHair(*mesh)) return FileKind::Head;
     if (!mesh && isStrands) return FileKind::Strands;
+    return std::nullopt;
+}
+
+}  // namespace
+
+FileKind kindOf(const QString& path) {
+    if (const auto kind = kindByBeginning(path)) return *kind;
+    const std::string file = path.toStdString();
     if (hairloom::importStrands(file)) return FileKind::Strands;
     // What is wrong with hair is told rather than that it is no head.
-    return isStrands && !importScene(file) ? FileKind::Strands : FileKind::Head;
+    return beginsLikeStrands(path) && !importScene(file) ? FileKind::Strands : FileKind::Head;
 }
 
 QString openFilter() {
@@ -172,6 +184,13 @@ bool DocumentFiles::mayShow(quint64 before, const QString& name) {
     return false;
 }
 
+void DocumentFiles::tellKind(const QString& path, std::function<void(FileKind)> done) {
+    if (const auto kind = kindByBeginning(path)) return done(*kind);
+    tasks_.run<FileKind>(
+        QString("Reading %1").arg(QFileInfo(path).fileName()),
+        [path](TaskControl&) -> Result<FileKind> { return kindOf(path); }, std::move(done));
+}
+
 void DocumentFiles::openFile(const QString& path, Opening opening, std::function<void()> done) {
     const QString name = QFileInfo(path).fileName();
     tasks_.run<std::pair<Opened, FileKind>>(
@@ -179,12 +198,17 @@ void DocumentFiles::openFile(const QString& path, Opening opening, std::function
         [path](TaskControl&) -> Result<std::pair<Opened, FileKind>> {
             const FileKind kind = kindOf(path);
             const std::string file = path.toStdString();
-            // What it was when it was opened before does not count any more.
+            // What it was when it was opened before counts until it is shown anew.
+            const FileVersion before = knownVersion(file);
             forgetInput(file);
             auto opened = kind == FileKind::Project   ? openProject(file)
                           : kind == FileKind::Strands ? openedStrands(hairloom::importStrands(file))
                                                       : readHead(file, {});
+            const FileVersion read = knownVersion(file);
+            forgetInput(file);
+            if (before.exists) noteInput(file, before);
             if (!opened) return tl::unexpected(opened.error());
+            opened->version = read;
             return std::pair(std::move(*opened), kind);
         },
         [this, path, name, opening, before = document_.editing().state(),
@@ -193,6 +217,7 @@ void DocumentFiles::openFile(const QString& path, Opening opening, std::function
             // Nothing is opened before somebody has said what it is.
             if (opened.first.isUnclear && unclearHead_) return unclearHead_(path);
             const QString missing = opened.first.missing;
+            if (opened.first.version.exists) noteInput(path.toStdString(), opened.first.version);
             const bool hasFile = opened.second == FileKind::Project && opening == Opening::AsItself;
             show(std::move(opened.first), hasFile ? path : QString(), name);
             preferences_.addRecentFile(path);

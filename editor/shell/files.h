@@ -25,7 +25,7 @@ enum class FileKind {
     Strands,  ///< hair of another program
 };
 /// From the beginning of the file, and the name where that does not tell. OBJ may be either: it is a head
-/// where it has faces that are no ribbons of hair.
+/// where it has faces that are no ribbons of hair, for which all of it is read.
 FileKind kindOf(const QString& path);
 
 /// How a project is opened that somebody else has to do with, too.
@@ -51,6 +51,8 @@ class DocumentFiles {
           tasks_(tasks),
           messages_(messages) {}
 
+    /// `done` with what the file is: at once where its beginning tells, or else when it was read.
+    void tellKind(const QString& path, std::function<void(FileKind)> done);
     /// Project or head, opened as the document; hair as it is, without a head. `done` is called when it is
     /// there.
     void open(const QString& path, std::function<void()> done = {});

@@ -160,7 +160,7 @@ MainWindow::MainWindow()
 }
 
 MainWindow::~MainWindow() {
-    tasks_.cancel();
+    tasks_.drop();
     tasks_.finish();
     // The viewport's last words would go to parts that are gone.
     viewport_->disconnect();

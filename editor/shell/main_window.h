@@ -99,6 +99,8 @@ class MainWindow : public QMainWindow {
     void newDocument();
     void chooseAndOpen();
     void chooseAndImport();
+    /// Asks how, with a preview.
+    void importHair(const QString& path);
     bool save();
     bool saveAs();
     /// To the next version of its name; as saveAs() where it was never saved.

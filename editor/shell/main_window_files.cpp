@@ -41,11 +41,16 @@ void MainWindow::newDocument() {
 }
 
 void MainWindow::open(const QString& path) {
-    const bool ontoHead = document_.groom().scalp && kindOf(path) == FileKind::Strands;
-    if (!ontoHead) {
+    const auto openIt = [this, path] {
         if (mayLeaveDocument()) files_.open(path);
-        return;
-    }
+    };
+    if (!document_.groom().scalp) return openIt();
+    files_.tellKind(path, [this, path, openIt](FileKind kind) {
+        kind == FileKind::Strands ? importHair(path) : openIt();
+    });
+}
+
+void MainWindow::importHair(const QString& path) {
     ImportDialog dialog(document_, tasks_, path, this);
     if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
 }
@@ -85,9 +90,7 @@ void MainWindow::chooseAndOpen() {
 
 void MainWindow::chooseAndImport() {
     const QString path = QFileDialog::getOpenFileName(this, "Import hair", {}, strandFilter());
-    if (path.isEmpty()) return;
-    ImportDialog dialog(document_, tasks_, path, this);
-    if (dialog.exec() == QDialog::Accepted) files_.importStrands(path, dialog.options());
+    if (!path.isEmpty()) importHair(path);
 }
 
 bool MainWindow::mayReplaceFile(const QString& path) {

@@ -49,6 +49,7 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     progress_->setRange(0, 100);
     progress_->setFixedWidth(140);
     progress_->setTextVisible(false);
+    cancel_->setObjectName("cancelTask");
     cancel_->setIcon(icon("close"));
     cancel_->setIconSize({12, 12});
     cancel_->setToolTip("Cancel this task and discard its result");
@@ -95,8 +96,14 @@ StatusLine::StatusLine(QtDocument& document, const Preferences& preferences, Tas
     });
     connect(&tasks_, &Tasks::disturbed, this, [this](const QString& text) { say(text, true); });
     connect(&tasks_, &Tasks::failed, this, [this](const QString& text) { say(text, true); });
+    connect(&tasks_, &Tasks::cancelled, this,
+            [this](const QString& name) { say(QString("%1 was cancelled").arg(name), false); });
     connect(&player_, &Player::failed, this, [this](const QString& text) { say(text, true); });
-    connect(cancel_, &QToolButton::clicked, &tasks_, &Tasks::cancel);
+    connect(cancel_, &QToolButton::clicked, this, [this] {
+        say(QString("Cancelling") + QChar(0x2026), false);
+        fade_.stop();
+        tasks_.cancel();
+    });
     connect(&player_, &Player::engineChanged, this, &StatusLine::showEngine);
     connect(&document_, &QtDocument::changed, this, &StatusLine::showCounts);
     connect(&viewport_, &Viewport::failed, this, [this](const QString& text) { say(text, true); });

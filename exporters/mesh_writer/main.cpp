@@ -12,6 +12,7 @@
 
 #include "exporters/mesh_writer/assimp_cards.h"
 #include "importers/answer_stream.h"
+#include "importers/confinement.h"
 
 namespace hairloom {
 namespace {
@@ -50,5 +51,6 @@ int run() {
 }  // namespace hairloom
 
 int main() {
+    hairloom::endWithParent();
     return hairloom::run();
 }

@@ -220,6 +220,7 @@ int run(int count, char** arguments) {
 }  // namespace hairloom
 
 int main(int count, char** arguments) {
+    hairloom::endWithParent();
     // Freeing what is about to vanish would only cost time, and could crash on a scene that assimp has
     // broken.
     std::_Exit(hairloom::run(count, arguments));

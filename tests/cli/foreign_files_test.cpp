@@ -3,13 +3,18 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <thread>
 
 #include "tests/cli/command.h"
 
 #ifndef _WIN32
+#include <signal.h>
 #include <sys/wait.h>
+#include <unistd.h>
 #endif
 
 namespace hairloom::test {
@@ -49,6 +54,63 @@ TEST_F(ForeignFiles, ViewsNameImagesBesideThemselvesOrWhereAllowed) {
     EXPECT_THAT(render("../elsewhere/none.png").errors, HasSubstr("outside the folder of the view"));
 #endif
 }
+
+#ifdef __linux__
+
+/// A sheet of many faces.
+void writeLargeObj(const fs::path& path) {
+    constexpr int kSide = 1400;
+    std::ofstream file(path);
+    for (int i = 0; i < kSide * kSide; ++i)
+        file << "v " << 0.0001 * (i % kSide) << " 0.1 " << 0.0001 * (i / kSide) << '\n';
+    for (int i = 1; i + kSide + 1 <= kSide * kSide; ++i) {
+        if (i % kSide != 0)
+            file << "f " << i << ' ' << i + kSide << ' ' << i + kSide + 1 << ' ' << i + 1 << '\n';
+    }
+}
+
+/// Waits until there are, or are no, processes that read the file, which stands in their words.
+bool waitForReaders(const fs::path& file, bool some, std::chrono::seconds most) {
+    const auto end = std::chrono::steady_clock::now() + most;
+    do {
+        bool found = false;
+        for (const auto& process : fs::directory_iterator("/proc")) {
+            std::ifstream words(process.path() / "cmdline");
+            const std::string all{std::istreambuf_iterator<char>(words), {}};
+            found = found || (all.find("hairloom-mesh-reader") != std::string::npos &&
+                              all.find(file.string()) != std::string::npos);
+        }
+        if (found == some) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    } while (std::chrono::steady_clock::now() < end);
+    return false;
+}
+
+TEST_F(ForeignFiles, TheReaderEndsWithTheJobHoweverThatEnds) {
+    const fs::path file = folder / "large.obj";
+    writeLargeObj(file);
+    for (const int signal : {SIGINT, SIGTERM, SIGKILL}) {
+        const pid_t job = fork();
+        ASSERT_GE(job, 0);
+        if (job == 0) {
+            // Shells let jobs in the background not hear Ctrl+C.
+            ::signal(SIGINT, SIG_DFL);
+            fs::current_path(folder);
+            execl(HAIRLOOM_CLI, HAIRLOOM_CLI, "--quiet", "create", "--mesh", file.c_str(), "--scalp", "all",
+                  "--count", "10", "-o", "a.hairloom", nullptr);
+            _exit(127);
+        }
+        EXPECT_TRUE(waitForReaders(file, true, std::chrono::seconds(60))) << "nothing is read";
+        kill(job, signal);
+        int status = 0;
+        waitpid(job, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status)) << "the job was done before " << signal;
+        EXPECT_TRUE(waitForReaders(file, false, std::chrono::seconds(2))) << "after signal " << signal;
+        EXPECT_FALSE(fs::exists(folder / "a.hairloom"));
+    }
+}
+
+#endif
 
 #if defined(HAIRLOOM_TEST_DENIED) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 

@@ -173,9 +173,9 @@ TEST_F(HabitsTest, CancellingAHeadThatLooksWrongLeavesTheDocumentAsItWas) {
     file.write("v 0 0 0\nv 17 0 0\nv 0 17 0\nv 0 0 17\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     file.close();
     window->open(file.fileName());
-    finishWork();
+    // What the file is, and then what is in it.
+    ASSERT_TRUE(QTest::qWaitFor([&] { return window->findChild<HeadDialog*>() != nullptr; }, kPatience));
     auto* dialog = window->findChild<HeadDialog*>();
-    ASSERT_TRUE(dialog);
     finishWork();
     EXPECT_EQ(hash(), before) << "nothing is opened before it is accepted";
     dialog->reject();
