@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <numbers>
 
 #include "core/base/file.h"
 #include "core/groom/file/json_reader.h"
@@ -61,13 +59,6 @@ constexpr LookPreset kPresets[] = {
 };
 constexpr std::string_view kSuffix = ".look.json";
 
-/// The reverse of shading::absorptionOfColour(), which is (k · ln colour)²: one colour tells k.
-Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness) {
-    const double half = shading::absorptionOfColour(Vec3d::Constant(0.5), azimuthalRoughness).x();
-    const double k = std::sqrt(half) / std::numbers::ln2;
-    return (-absorption.cwiseMax(0.0).array().sqrt() / k).exp().matrix();
-}
-
 void reset(std::string_view name, HairMaterial& material) {
     const Field<HairMaterial>& field = *runtime::findField<HairMaterial>(name);
     for (std::uint32_t c = 0; c < field.components(); ++c) field.set(material, defaultValue(field, c), c);
@@ -119,6 +110,7 @@ void applyLook(const LookPreset& preset, HairMaterial& material) {
     material.eumelanin = preset.eumelanin;
     material.pheomelanin = preset.pheomelanin;
     material.colourVariation = preset.variation;
+    material.colourSource = ColourSource::melanin;
     colourByMelanin(material);
     if (preset.controls) {
         resetHighlights(material);
@@ -152,13 +144,13 @@ Status applyLookOfView(const std::string& view, const std::string& name, Groom& 
 void colourByMelanin(HairMaterial& material) {
     const Vec3d inside = shading::absorption(
         {static_cast<double>(material.eumelanin), static_cast<double>(material.pheomelanin)});
-    const Vec3f colour =
-        colourOfAbsorption(inside, static_cast<double>(material.azimuthalRoughness)).cast<float>();
-    // Sun and wear lighten hair towards its tip.
-    constexpr float kRoot = 0.8f;
-    constexpr float kTip = 1.15f;
-    material.rootColour = kRoot * colour;
-    material.tipColour = (kTip * colour).cwiseMin(1.0f);
+    const auto colour = [&](float factor) -> Vec3f {
+        return shading::kajiyaColour(static_cast<double>(factor) * inside,
+                                     static_cast<double>(material.azimuthalRoughness))
+            .cast<float>();
+    };
+    material.rootColour = colour(1);
+    material.tipColour = colour(material.tipMelanin);
 }
 
 std::vector<std::string> savedLooks(const std::filesystem::path& folder) {

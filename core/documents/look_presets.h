@@ -29,7 +29,8 @@ std::span<const LookPreset> lookPresets();
 /// The preset of that name, or null.
 const LookPreset* findLook(std::string_view name);
 
-/// Sets melanin, the colours that this melanin makes, and their variation. Presets with controls set the
+/// Sets melanin, which is what colours the hair from then on, the colours that this melanin makes, and their
+/// variation. Presets with controls set the
 /// model and all controls of its highlights, of which those that they do not name get their defaults. What
 /// else there is stays, as the shape of the fibre, streaks and dye. Extras that another preset has set and
 /// that are still as it has them get their defaults first.
@@ -41,7 +42,8 @@ std::vector<std::string> lookNames();
 /// That of a view: `name` as the file `view` has it; nothing where it is empty. Error: no such look.
 Status applyLookOfView(const std::string& view, const std::string& name, Groom& groom);
 
-/// Gives the material the root and tip colours that its melanin makes.
+/// Gives the material the root and tip colours with which Kajiya-Kay shows the melanin of root and tip as
+/// Marschner does.
 void colourByMelanin(HairMaterial& material);
 
 /// Names of the looks of a folder, in order; files NAME.look.json.

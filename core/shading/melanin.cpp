@@ -25,6 +25,10 @@ Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness) {
     return (-absorption.cwiseMax(0.0).array().sqrt() / absorptionScale(azimuthalRoughness)).exp().matrix();
 }
 
+Vec3d kajiyaColour(const Vec3d& absorption, double azimuthalRoughness) {
+    return colourOfAbsorption(absorption, azimuthalRoughness).cwiseSqrt();
+}
+
 double longitudinalWidth(double roughness) {
     const double b = std::clamp(roughness, 0.0, 1.0);
     // v = (0.726 β + 0.812 β² + 3.7 β²⁰)² is the variance over θ_o; θ_h moves half as far.

@@ -23,6 +23,11 @@ Vec3d absorptionOfColour(const Vec3d& colour, double azimuthalRoughness);
 Vec3d colourOfAbsorption(const Vec3d& absorption, double azimuthalRoughness);
 /// It is (ln c · this)².
 double absorptionScale(double azimuthalRoughness);
+/// The colour of Kajiya-Kay's fibres that absorb so much, linear 0…1: the square root of that of a volume.
+/// Light that much hair sends back has been coloured on its way in and, as much, on its way out: a deep layer
+/// reflects (1 − γ)/(1 + γ) ≈ e^(−γ) · e^(−γ) of diffuse light (Hapke 1981, γ = √(1 − albedo)). Shadows
+/// colour the way in of Kajiya-Kay's light already.
+Vec3d kajiyaColour(const Vec3d& absorption, double azimuthalRoughness);
 
 /// β of the R lobe in θ_h, radians, of a roughness 0…1 (Chiang et al. 2016, whose variance is one of
 /// θ_o).

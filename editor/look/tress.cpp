@@ -16,12 +16,11 @@ constexpr float kRagged = 0.1f;                    // of the length, by which ha
 
 /// Light from around, beside which the lamps only give shape: it shows the colour of all of the lock.
 constexpr float kSky = 3;
-/// No light passes through fibres of Kajiya and Kay: they need more of it, and the more the darker they are,
-/// as their highlights stay whatever their colour.
-constexpr float kKajiyaSky = 9, kMostSky = 32 * kKajiyaSky;
+/// No light passes through fibres of Kajiya and Kay: they need more of it.
+constexpr float kKajiyaSky = 9;
 /// Others are exposed by up to a stop more where they are dark, as a photographer does it.
-constexpr float kLight = 0.4f, kDark = 0.004f;  // linear luminance of the hair
-constexpr float kGrey = 0.7f;                   // of white strands
+constexpr float kLight = 0.63f, kDark = 0.063f;  // linear luminance of the colours
+constexpr float kGrey = 0.7f;                    // of white strands
 
 /// Hair that hangs over a rounded edge and sways to one side and back.
 Groom tress() {
@@ -79,10 +78,10 @@ PictureRequest tressPicture(const HairMaterial& material, std::uint32_t side_px)
     request.quality.frames = 4;
     // So few photons as a small picture gets leave stains on it.
     request.quality.scattering = render::Scattering::dual;
-    const float bright = brightness(material);
     if (material.shadingModel == ShadingModel::kajiya) {
-        request.environment = std::min(kKajiyaSky / std::sqrt(bright), kMostSky);
+        request.environment = kKajiyaSky;
     } else {
+        const float bright = brightness(material);
         const float dark = std::clamp(std::log(kLight / bright) / std::log(kLight / kDark), 0.0f, 1.0f);
         request.environment = kSky;
         request.exposure *= std::exp2(dark);
