@@ -34,6 +34,13 @@ std::filesystem::path folderOfLooks() {
     return (QStandardPaths::writableLocation(QStandardPaths::AppDataLocation) + "/looks").toStdString();
 }
 
+/// Colours are what it is for: those of a selected one are not tinted.
+QIcon shownAlways(const QPixmap& picture) {
+    QIcon icon(picture);
+    icon.addPixmap(picture, QIcon::Selected);
+    return icon;
+}
+
 /// While the device has not drawn it yet, and where there is none: tip over root.
 QPixmap swatch(const HairMaterial& material) {
     QPixmap pixmap(kPicture, kPicture);
@@ -120,7 +127,7 @@ class PresetList : public QWidget {
     void add(Look look, const QString& tip) {
         QString label = look.name;
         label[0] = label[0].toUpper();
-        auto* item = new QListWidgetItem(QIcon(swatch(look.material)), label);
+        auto* item = new QListWidgetItem(shownAlways(swatch(look.material)), label);
         item->setToolTip(tip);
         list_->addItem(item);
         looks_.push_back(std::move(look));
@@ -202,13 +209,13 @@ class PresetList : public QWidget {
 
     void showSwatch(std::size_t look) {
         QListWidgetItem* const item = list_->item(static_cast<int>(look));
-        item->setIcon(QIcon(swatch(looks_[look].material)));
+        item->setIcon(shownAlways(swatch(looks_[look].material)));
         item->setData(Qt::UserRole, false);
     }
 
     void show(std::size_t look, const QPixmap& picture) {
         QListWidgetItem* const item = list_->item(static_cast<int>(look));
-        item->setIcon(QIcon(picture));
+        item->setIcon(shownAlways(picture));
         item->setData(Qt::UserRole, true);  // drawn
     }
 

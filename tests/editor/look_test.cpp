@@ -125,6 +125,16 @@ TEST_F(LookTest, APresetGivesItsPigmentAndColours) {
     EXPECT_GT(groom().material.tipColour.minCoeff(), 10 * black.maxCoeff());
 }
 
+TEST_F(LookTest, ASelectedPresetShowsItsColour) {
+    auto* looks = find<QListWidget>("looks");
+    for (int i = 0; i < looks->count(); ++i) {
+        const QIcon icon = looks->item(i)->icon();
+        EXPECT_EQ(icon.pixmap(looks->iconSize(), QIcon::Selected).toImage(),
+                  icon.pixmap(looks->iconSize(), QIcon::Normal).toImage())
+            << i;
+    }
+}
+
 TEST_F(LookTest, APresetMayTurnTheHighlightsAndANaturalOneLeavesThem) {
     const auto choose = [&](const char* name) {
         auto* looks = find<QListWidget>("looks");
