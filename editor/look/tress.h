@@ -8,7 +8,7 @@
 namespace hairloom::editor {
 
 /// Goes up with each change of the picture, so that none is shown that was kept of an older one.
-inline constexpr int kTressVersion = 3;
+inline constexpr int kTressVersion = 4;
 
 /// A wavy lock with that material, `side_px` pixels square, transparent around it. Dark looks get more light
 /// than bright ones, so that each shows its colour.
