@@ -390,6 +390,14 @@ bool DeviceScene::hasTubes() const {
     });
 }
 
+bool DeviceScene::knowsSections() const {
+    return std::ranges::any_of(groups, [](const StrandGroup& group) {
+        return std::ranges::any_of(group.materials, [](const MaterialOnDevice& m) {
+            return !m.shading.tubes && m.shading.fibre.model == ShadingModel::marschner;
+        });
+    });
+}
+
 std::uint32_t DeviceScene::strandsBefore(std::size_t group) const {
     std::size_t count = 0;
     for (std::size_t g = 0; g < group; ++g) count += groups[g].strandCount;

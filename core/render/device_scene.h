@@ -39,6 +39,7 @@ struct DrawBatch {
     gpu::BufferPtr curve, colour;                     ///< hold what `curveSubdivisions` calls for
     gpu::BufferPtr litColour;                         ///< the same without shadows, once it was asked for
     gpu::BufferPtr seen;                              ///< of the sky, once it was asked for
+    gpu::BufferPtr across;                            ///< light over the width, once it was asked for
     gpu::BufferPtr albedo, past;                      ///< and curves of a frame ago, likewise
     std::uint32_t pastSubdivisions = 0;               ///< 0: none were recorded
     std::uint32_t pastStrands = 0;                    ///< that were
@@ -143,6 +144,9 @@ class DeviceScene {
     /// their points see of the `sky`; nothing happens when there is.
     Status prepareCurves(gpu::Device& device, std::uint32_t subdivisions, bool twice = false,
                          bool sky = false);
+    /// Makes room for light over the width of hair where that is wanted, or takes it away; prepareCurves()
+    /// comes before. True: some is new, and holds nothing.
+    Result<bool> prepareAcross(gpu::Device& device, bool wanted);
     /// Makes room for what Pass::surface tells; nothing happens when there is. prepareCurves() comes before.
     Status prepareSurface(gpu::Device& device);
     /// Bakes the tables of materials that have changed. `behind`: on another thread, while those that are
@@ -165,6 +169,8 @@ class DeviceScene {
         return groups[batch.group].materials[batch.material];
     }
     bool hasTubes() const;
+    /// Of some hair is known which side of it is brighter.
+    bool knowsSections() const;
     std::uint32_t strandsBefore(std::size_t group) const;  ///< in all groups before that one
     std::vector<Vec3f> sample()
         const;  ///< of the points of all hair; corners of its bounds where only those are known

@@ -18,6 +18,9 @@ constexpr std::uint32_t kAverages = 15;
 constexpr std::uint32_t kSpreadFactors = 16;
 constexpr std::uint32_t kSky = 17;
 
+// Radians: a smooth fibre's light would leave parts of its width that are thinner than what is told apart.
+constexpr double kLeastAcross = 0.1;
+
 Result<gpu::TexturePtr> textureOf(gpu::Device& device, const char* name, const shading::Table& table) {
     std::vector<Eigen::half> halves;
     halves.reserve(table.rgba.size());
@@ -70,6 +73,10 @@ shaders::FibreConstants constantsOf(const FibreMaterial& material, bool varies) 
         c.rIntensity = static_cast<float>(intensity[0]);
         c.ttIntensity = static_cast<float>(intensity[1]);
         c.trtIntensity = static_cast<float>(intensity[2]);
+        const shading::AzimuthalParameters& section = material.marschner.azimuthal;
+        c.ior = static_cast<float>(section.ior);
+        c.azimuthalWidth = static_cast<float>(std::max(section.width, kLeastAcross));
+        c.absorption = toFloat4(section.absorption);
         return c;
     }
     const shading::SadeghiParameters& model = material.sadeghi;
@@ -215,6 +222,11 @@ const char* FibreTables::shader() const {
             return dual ? "shade_sadeghi_dual.comp" : "shade_sadeghi.comp";
     }
     return varies_ ? "shade_look.comp" : "shade.comp";
+}
+
+const char* FibreTables::acrossShader() const {
+    if (!knowsSection()) return "shade_across.comp";
+    return varies_ ? "shade_across_marschner_look.comp" : "shade_across_marschner.comp";
 }
 
 void FibreTables::bind(gpu::CommandList& list) const {

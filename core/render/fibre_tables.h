@@ -38,6 +38,10 @@ class FibreTables {
     bool hasShaderFor(const StrandShading& material) const;
     /// The compute shader that shades with this material.
     const char* shader() const;
+    /// That which finds how its light changes over a hair's width, or says that it does not.
+    const char* acrossShader() const;
+    /// The model knows how light leaves a fibre's section, and so which side of it is brighter.
+    bool knowsSection() const { return material_.model == ShadingModel::marschner; }
     /// Tables and constants, registers b1, s0 and from t11 on; nothing for Kajiya-Kay.
     void bind(gpu::CommandList& list) const;
 

@@ -74,6 +74,8 @@ void setUpLights(RendererState& state) {
     shade.gridSize = {grid.size[0], grid.size[1], grid.size[2], hasGrid ? 1u : 0u};
     shade.lightCount = static_cast<std::uint32_t>(state.lights.size());
     for (std::size_t i = 0; i < state.lights.size(); ++i) shade.lights[i] = lightConstants(state, i);
+    for (std::size_t i = 0; i < state.closeViews.size(); ++i)
+        shade.closeMaps[i] = closeMapConstants(state, i);
 }
 
 shaders::ShadeConstants lightsOfFrame(const RendererState& state) {
@@ -101,6 +103,7 @@ shaders::ShadeConstants shadeConstants(const RendererState& state, const StrandS
     c.rootBrightness = m.rootBrightness;
     c.tipBrightness = m.tipBrightness;
     c.brightnessVariation = m.variation;
+    c.acrossShare = state.closeHair.across;
     c.fibreOpacity = m.opacity;
     c.albedo = toShader(m.albedo, 0);
     c.bounded = m.bounded ? 1 : 0;
@@ -198,6 +201,19 @@ void recordShading(gpu::CommandList& list, RendererState& state) {
         list.setPipeline(state.pipelines.compute(shading.tubes ? tube : material.fibre.shader()));
         if (!shading.tubes) material.fibre.bind(list);
         dispatchCurvePoints(list, state, batch, shadeConstants(state, shading), state.colourOf(batch));
+    }
+    list.endPass();
+}
+
+void recordAcross(gpu::CommandList& list, RendererState& state) {
+    list.beginPass({passName(Pass::across), {}, {}});
+    bindShadows(list, state);
+    for (const DrawBatch& batch : state.scene.batches) {
+        const MaterialOnDevice& material = state.scene.materialOf(batch);
+        list.setPipeline(state.pipelines.compute(material.fibre.acrossShader()));
+        material.fibre.bind(list);
+        bind(list, {Binding::read(4, batch.colour)});
+        dispatchCurvePoints(list, state, batch, shadeConstants(state, material.shading), batch.across);
     }
     list.endPass();
 }

@@ -73,7 +73,7 @@ Status check(const RenderOptions& o, const gpu::DeviceInfo& device) {
     return {};
 }
 
-std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo& device) {
+std::uint32_t mapsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device) {
     // Depths of heads lie side by side in a texture, the words of a texel of opacity in a buffer.
     const std::uint64_t side = options.shadowResolution;
     const std::uint64_t bytes =
@@ -81,7 +81,11 @@ std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo
     const std::uint64_t room =
         std::min<std::uint64_t>(device.maxTextureSize / side, device.maxBufferBytes / (bytes * side * side));
     return static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(options.shadowLights, 1, std::max<std::uint64_t>(room, 1)));
+        std::clamp<std::uint64_t>(room, 1, HAIRLOOM_MAX_LIGHTS + HAIRLOOM_CLOSE_MAPS));
+}
+
+std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo& device) {
+    return std::clamp<std::uint32_t>(options.shadowLights, 1, mapsThatFit(options, device));
 }
 
 Result<std::uint32_t> chooseSamples(const RenderOptions& options, const gpu::DeviceInfo& device) {

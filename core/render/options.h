@@ -128,7 +128,10 @@ inline constexpr float kMaxHeadAbsorption = 10'000;  ///< 1/m
 inline constexpr float kMaxShadowBlur = 32;          ///< pixels
 inline constexpr std::uint64_t kMaxPixels = std::uint64_t{64} << 20u;
 
-/// Shadow maps of this resolution that the device has room for, at most `shadowLights` of the options.
+/// Shadow maps of this resolution that the device has room for, at least one.
+std::uint32_t mapsThatFit(const RenderOptions& options, const gpu::DeviceInfo& device);
+
+/// Lights that have some of them, at most `shadowLights` of the options.
 std::uint32_t shadowLightsOf(const RenderOptions& options, const gpu::DeviceInfo& device);
 
 /// Errors: a size or number out of its range, or something that this device lacks.

@@ -108,7 +108,8 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
     for (const DrawBatch& batch : state.scene.batches) {
         if (state.scene.materialOf(batch).shading.tubes) continue;
         bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
-                    Binding::read(2, batch.headers), Binding::read(3, batch.patches)});
+                    Binding::read(2, batch.headers), Binding::read(3, batch.patches),
+                    Binding::read(5, state.acrossOf(batch))});
         const std::uint32_t count = batch.patchesBefore[batch.strandCount(state.detail)];
         const std::uint32_t step = state.onCpu ? kPatchesPerDrawOnCpu : count;
         for (std::uint32_t first = 0; first < count; first += step) {
@@ -122,7 +123,8 @@ void drawPatches(gpu::CommandList& list, const RendererState& state) {
 /// As strips of the curves' points.
 void drawStrips(gpu::CommandList& list, const RendererState& state, const DrawBatch& batch) {
     const std::uint32_t subdivisions = state.detail.subdivisions;
-    bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
+    bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
+                Binding::read(5, state.acrossOf(batch))});
     list.setIndexBuffer(batch.indices.at(subdivisions));
     list.drawIndexed(batch.indexCount(batch.strandCount(state.detail), subdivisions));
 }
@@ -232,6 +234,9 @@ shaders::ViewConstants viewConstants(const RendererState& state, const Mat4f& cl
     view.frame = number;
     view.hairBegins = begin;
     view.hairDepth = depth;
+    view.across = !state.plan.runs(Pass::across)                  ? HAIRLOOM_ACROSS_NONE
+                  : state.options.ribbons == Ribbons::tessellated ? HAIRLOOM_ACROSS_PATCHES
+                                                                  : HAIRLOOM_ACROSS_PIECES;
     return view;
 }
 

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <optional>
 
+#include "core/render/close_maps.h"
 #include "core/render/device_scene.h"
 #include "core/render/options.h"
 #include "core/render/overlay.h"
@@ -78,8 +79,10 @@ struct RendererState {
     gpu::BufferPtr noColour;             ///< bound where there is no grid of light
     gpu::SamplerPtr linearFilter;        ///< once a filter was asked for
     std::vector<LightView> lightViews;
-    std::vector<LightView> skyViews;  ///< where the plan has maps of the sky
-    shaders::ShadeConstants shade{};  ///< all but the material
+    CloseHair closeHair;
+    std::vector<LightView> closeViews;  ///< parts of those of the first lights that cast shadows
+    std::vector<LightView> skyViews;    ///< where the plan has maps of the sky
+    shaders::ShadeConstants shade{};    ///< all but the material
     shaders::SkyConstants sky{};
     LightGridPlace lightGrid;
 
@@ -87,6 +90,10 @@ struct RendererState {
     /// Where the light of a batch's curve points is, with shadows or without.
     const gpu::BufferPtr& colourOf(const DrawBatch& batch) const {
         return lit ? batch.litColour : batch.colour;
+    }
+    /// And what of it changes over their width, where the plan asks for it.
+    const gpu::BufferPtr& acrossOf(const DrawBatch& batch) const {
+        return plan.runs(Pass::across) ? batch.across : placeholderBuffer;
     }
     /// Where frames add up, with shadows or without.
     const gpu::BufferPtr& frames() const { return targets[lit ? BufferId::litSum : BufferId::sum]; }
@@ -120,6 +127,8 @@ void recordCurves(gpu::CommandList& list, RendererState& state);
 /// What each curve point sees of light from around.
 void recordSkySeen(gpu::CommandList& list, RendererState& state);
 void recordShading(gpu::CommandList& list, RendererState& state);
+/// Light over the width of hair, from that of its mean, which recordShading() finds.
+void recordAcross(gpu::CommandList& list, RendererState& state);
 /// What is nearest in each pixel.
 void recordSurface(gpu::CommandList& list, RendererState& state);
 /// The frame joins those before it; `moves`: something is not as it was in them.

@@ -63,6 +63,8 @@ class Planner {
                                 : !cast                           ? "no light casts shadows"
                                                                   : "nothing receives them";
         const bool hair = on && facts_.hair;
+        plan_.closeMaps = hair ? facts_.closeMaps : 0;
+        const std::uint32_t squares = facts_.shadowLights + plan_.closeMaps;
         const bool layers = hair && options_.shadows != Shadows::absorption;
         const bool adaptive = hair && options_.shadows == Shadows::adaptive;
         const bool first = hair && !adaptive && options_.shadows != Shadows::opacityMaps;
@@ -81,23 +83,21 @@ class Planner {
              layers ? layersWhy()
              : hair ? "absorption assumes evenly spread hair"
                     : noHair);
-        atlas(TargetId::headDepth, options_.shadowResolution, facts_.shadowLights, on && facts_.meshes,
+        atlas(TargetId::headDepth, options_.shadowResolution, squares, on && facts_.meshes,
               "parts of the head that occlude the lights");
         const std::uint64_t square = std::uint64_t{options_.shadowResolution} * options_.shadowResolution;
         const bool deep = options_.shadows == Shadows::deepOpacity;
-        buffer(BufferId::firstHair, square * facts_.shadowLights, 4, first,
-               "first hair seen from the lights");
+        buffer(BufferId::firstHair, square * squares, 4, first, "first hair seen from the lights");
         const std::uint32_t count = layerCount(options_);
         buffer(BufferId::layerCounts, square * (adaptive ? 2 : count), 4, layers,
                adaptive ? "where the lists of one light's texels begin, and what they have"
                         : "fibres of one light's layers during counting");
-        buffer(BufferId::fragmentCounts, std::uint64_t{2} * facts_.shadowLights, 4, adaptive,
+        buffer(BufferId::fragmentCounts, std::uint64_t{2} * squares, 4, adaptive,
                "pieces of hair in texels, and those in lists");
         buffer(BufferId::lightFragments, std::uint64_t{HAIRLOOM_LISTED_WORDS} * facts_.fragments, 4,
                adaptive && facts_.fragments > 0,
                fmt::format("lists of {} pieces of hair in the texels of one light", facts_.fragments));
-        buffer(BufferId::opacity, opacityWords(options_.shadows, count) * square * facts_.shadowLights, 4,
-               layers,
+        buffer(BufferId::opacity, opacityWords(options_.shadows, count) * square * squares, 4, layers,
                deep       ? fmt::format("{} layers and the depth they are relative to", count)
                : adaptive ? fmt::format("{} nodes of a texel's transmittance", count)
                           : fmt::format("{} slices", count));
@@ -115,6 +115,8 @@ class Planner {
                               : fmt::format("counts hair in {} slices at fixed depths", count);
         if (facts_.askedLayers > count)
             why += fmt::format(", since {} do not fit in a buffer of this device", facts_.askedLayers);
+        if (plan_.closeMaps > 0)
+            why += fmt::format("; once more from {} lights of what is near the camera", plan_.closeMaps);
         return why;
     }
 
@@ -171,6 +173,13 @@ class Planner {
                                        facts_.look ? "colour or absorption varies"
                                                    : "all hair of a material looks the same")
                          : "no hair");
+        const bool across = facts_.hair && facts_.across && options_.shadowBlur == 0;
+        pass(Pass::across, across,
+             across ? fmt::format("hair is wider than a pixel: {} parts of its width have light of their own",
+                                  HAIRLOOM_ACROSS_CELLS)
+             : options_.shadowBlur > 0 ? "blurred shadows"
+             : facts_.hair             ? "no hair of fibres is wider than a pixel"
+                                       : "no hair");
         const bool surface = options_.surface || options_.temporal;
         pass(Pass::surface, surface,
              surface ? "depth, strand, velocity and albedo of the nearest surface in each pixel"
@@ -278,10 +287,10 @@ class Planner {
 
 const char* passName(Pass pass) {
     constexpr std::array<const char*, kPassCount> kNames{
-        "curves",     "head depth", "first hair",    "opacity layers", "sky head depth", "sky first hair",
-        "sky layers", "sky seen",   "light grid",    "shade",          "surface",        "nearest",
-        "draw",       "blend",      "composite",     "accumulate",     "temporal",       "shadow blur",
-        "tone map",   "filter",     "overlay depth", "overlay",        "overlay on top"};
+        "curves",      "head depth", "first hair", "opacity layers", "sky head depth", "sky first hair",
+        "sky layers",  "sky seen",   "light grid", "shade",          "across",         "surface",
+        "nearest",     "draw",       "blend",      "composite",      "accumulate",     "temporal",
+        "shadow blur", "tone map",   "filter",     "overlay depth",  "overlay",        "overlay on top"};
     return kNames[static_cast<std::size_t>(pass)];
 }
 

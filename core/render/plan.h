@@ -28,6 +28,7 @@ enum class Pass {
     skySeen,    ///< from each curve point
     lightGrid,  ///< light between hairs, where it falls
     shade,
+    across,   ///< light from one side of a hair to the other
     surface,  ///< of what is nearest in each pixel: depth, strand, velocity, albedo
     nearest,  ///< where kernels rasterise: what is in front, before its light is drawn
     draw,
@@ -47,7 +48,7 @@ inline constexpr std::size_t kPassCount = static_cast<std::size_t>(Pass::overlay
 const char* passName(Pass pass);
 
 enum class TargetId {
-    headDepth,  ///< shadow atlas: a square for each light that casts shadows, side by side
+    headDepth,  ///< shadow atlas: a square for each light that casts shadows, then close maps, side by side
     skyHead,    ///< the same for each side that the sky is seen from
     colour,
     resolved,
@@ -101,10 +102,12 @@ struct SceneFacts {
     bool hair = false;
     std::uint32_t lights = 0;
     std::uint32_t shadowLights = 0;  ///< of them
+    std::uint32_t closeMaps = 0;     ///< that hair near the camera calls for: closeMapsThatFit()
     bool environment = false;        ///< light from around
     bool overlay = false;            ///< marks that meshes hide
     bool overlayOnTop = false;
     bool volume = false;            ///< light between hairs is followed
+    bool across = false;            ///< hair near the camera has light that changes over its width
     bool look = false;              ///< some hair does not look the same everywhere
     std::uint32_t askedLayers = 0;  ///< of opacity, where the options have fewer; else no matter
     std::uint32_t fragments = 0;    ///< that lists of adaptive maps hold: fragmentsThatFit()
@@ -150,6 +153,7 @@ struct RenderPlan {
     std::array<PlannedTarget, kTargetCount> targets;
     std::array<PlannedBuffer, kBufferCount> buffers;
     PlannedTables tables;
+    std::uint32_t closeMaps = 0;  ///< squares of the lights' atlas after those of whole lights
 
     bool runs(Pass pass) const { return passes[static_cast<std::size_t>(pass)].on; }
     const PlannedTarget& target(TargetId id) const { return targets[static_cast<std::size_t>(id)]; }

@@ -154,7 +154,8 @@ void dispatchStrands(gpu::CommandList& list, const RendererState& state, shaders
         raster.count = points;
         raster.rowLength = rows.threads();
         list.setConstants(2, gpu::bytesOf(raster));
-        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch))});
+        bind(list, {Binding::read(0, batch.curve), Binding::read(1, state.colourOf(batch)),
+                    Binding::read(5, state.acrossOf(batch))});
         list.dispatch(rows.groups, rows.rows);
     }
 }

@@ -82,6 +82,8 @@ struct Renderer::Parts {
         Changes changes = Changes::placeholderTexture();
         std::uint32_t accumulated = 0;
         std::vector<bool> mapped;
+        std::vector<LightView> closeViews;
+        bool drawsMaps = false;
     } before;             ///< the last record()
     float blurredBy = 0;  ///< what Pass::shadowBlur was last recorded for; 0: other frames
 
@@ -97,7 +99,8 @@ struct Renderer::Parts {
     Status prepareTargets(bool presents);
     Status prepareHelpers();
     Status prepare(const RenderOptions& options, bool presents);
-    void recordChanges(gpu::CommandList& list);
+    /// Whether anything is not as it was.
+    bool recordChanges(gpu::CommandList& list);
     std::vector<bool> castingLights() const;
     template <class Record>
     void withoutShadows(Record record) {
@@ -265,6 +268,9 @@ SceneFacts Renderer::Parts::facts(bool presents) const {
     facts.overlayOnTop = std::ranges::any_of(state.overlay.overlay.batches, &OverlayBatch::onTop);
     facts.presents = presents;
     facts.askedLayers = askedLayers;
+    if (state.closeHair.maps > 0)
+        facts.closeMaps = closeMapsThatFit(state.options, device.info(), facts.shadowLights);
+    facts.across = state.closeHair.across > 0 && facts.lights > 0 && state.scene.knowsSections();
     for (const StrandGroup& group : state.scene.groups) {
         for (const MaterialOnDevice& material : group.materials) {
             facts.look = facts.look || material.shading.look.has_value();
@@ -337,6 +343,9 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     const HairDetail detail = detailOf(state);
     if (detail != state.detail) changes.add(Changes::geometry());
     state.detail = detail;
+    const CloseHair closeHair = closeHairOf(state);
+    if (closeHair != state.closeHair) changes.add(Changes::camera());
+    state.closeHair = closeHair;
     const auto newTables = state.scene.prepareFibres(device, options.bakeBehind);
     if (!newTables) return tl::unexpected(newTables.error());
     if (*newTables) changes.add(Changes::looks());
@@ -347,6 +356,11 @@ Status Renderer::Parts::prepare(const RenderOptions& options, bool presents) {
     }
     auto status = state.scene.prepareCurves(device, detail.subdivisions, state.plan.runs(Pass::shadowBlur),
                                             state.plan.runs(Pass::skySeen));
+    if (status) {
+        const auto isNew = state.scene.prepareAcross(device, state.plan.runs(Pass::across));
+        if (!isNew) return tl::unexpected(isNew.error());
+        if (*isNew) changes.add(Changes::camera());
+    }
     return status && state.plan.runs(Pass::surface) ? state.scene.prepareSurface(device) : status;
 }
 
@@ -356,15 +370,17 @@ std::vector<bool> Renderer::Parts::castingLights() const {
     return casting;
 }
 
-void Renderer::Parts::recordChanges(gpu::CommandList& list) {
+bool Renderer::Parts::recordChanges(gpu::CommandList& list) {
     state.scene.recordUploads(list);
     const bool holds = holdsMaps && mapped == castingLights();
-    const bool shadows = changes.shadows && !holds;
+    bool shadows = changes.shadows && !holds;
     const bool sky = changes.sky && !holds;
     if (shadows) {
         state.mapDetail = state.detail;
         fitViews(state, sky);
     }
+    if (!holds && placeCloseMaps(state)) shadows = changes.shading = changes.picture = true;
+    before.drawsMaps = shadows || sky;
     const bool grid = changes.grid && state.plan.runs(Pass::lightGrid) && (!holds || newGrid);
     if (grid) {
         placeLightGrid(state);
@@ -380,14 +396,17 @@ void Renderer::Parts::recordChanges(gpu::CommandList& list) {
     newGrid = false;
     if (changes.shading && state.plan.runs(Pass::shade)) {
         recordShading(list, state);
+        if (state.plan.runs(Pass::across)) recordAcross(list, state);
         if (state.plan.runs(Pass::shadowBlur)) withoutShadows([&] { recordShading(list, state); });
     }
     if ((changes.picture || state.options.temporal) && state.plan.runs(Pass::surface))
         recordSurface(list, state);
     if (changes.picture) accumulated = 0;
+    const bool moves = changes.curves || changes.shadows || changes.grid || changes.shading;
     heldBack.grid |= holds && changes.grid && !grid;
     if (holds && changes.shadows) heldBack.add(changes.sky ? Changes::head() : Changes::lights());
     changes = Changes::placeholderTexture();
+    return moves;
 }
 
 Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, const gpu::TexturePtr& target) {
@@ -405,9 +424,8 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
     }
     if (auto status = prepareOverlay(p.device, list, p.state.overlay); !status) return status;
     if (!p.holdsMaps) p.changes.add(std::exchange(p.heldBack, Changes::placeholderTexture()));
-    p.before = {p.changes, p.accumulated, p.mapped};
-    const bool moves = p.changes.curves || p.changes.shadows || p.changes.grid || p.changes.shading;
-    p.recordChanges(list);
+    p.before = {p.changes, p.accumulated, p.mapped, p.state.closeViews};
+    const bool moves = p.recordChanges(list);
     const bool blurs = p.state.plan.runs(Pass::shadowBlur);
     if (options.temporal) {
         recordFrame(list, p.state, p.state.temporal.frames);
@@ -432,7 +450,11 @@ Status Renderer::record(gpu::CommandList& list, const RenderOptions& options, co
 void Renderer::takeBack() {
     Parts& p = *parts_;
     // Maps are then begun, and no longer what they were.
-    if (p.before.changes.shadows || p.before.changes.sky) p.before.mapped.clear();
+    if (p.before.drawsMaps) {
+        p.before.mapped.clear();
+        p.before.closeViews.clear();
+    }
+    p.state.closeViews = p.before.closeViews;
     p.changes.add(p.before.changes);
     p.accumulated = p.before.accumulated;
     p.mapped = p.before.mapped;

@@ -107,8 +107,8 @@ class Renderer {
     /// that middle.
     const gpu::BufferPtr& surface() const;
 
-    /// Of adaptive shadow maps, two a light in the order of their lights: pieces of hair in its texels, and
-    /// those that its lists took; null for other shadows.
+    /// Of adaptive shadow maps, two a map, those of the lights in their order and then close ones: pieces of
+    /// hair in its texels, and those that its lists took; null for other shadows.
     const gpu::BufferPtr& fragmentCounts() const;
 
     Box3f bounds() const;  ///< of all meshes and strands

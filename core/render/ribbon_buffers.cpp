@@ -57,7 +57,7 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
             gather(batch.curve, written(device, "curve points", count, sizeof(shaders::CurvePoint)));
             gather(batch.colour, written(device, "curve colours", count, sizeof(shaders::float4)));
             batch.curveSubdivisions = subdivisions;
-            batch.litColour = batch.albedo = batch.past = nullptr;
+            batch.litColour = batch.across = batch.albedo = batch.past = nullptr;
             batch.pastSubdivisions = 0;
         }
         const std::uint32_t maximum = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
@@ -83,6 +83,21 @@ Status DeviceScene::prepareCurves(gpu::Device& device, std::uint32_t subdivision
         gather(indices, device.createBuffer(desc, bytes(content)));
     }
     return gather.status();
+}
+
+Result<bool> DeviceScene::prepareAcross(gpu::Device& device, bool wanted) {
+    Gather gather;
+    bool isNew = false;
+    for (DrawBatch& batch : batches) {
+        if (!wanted) batch.across = nullptr;
+        if (!wanted || batch.across != nullptr) continue;
+        const std::uint32_t count = batch.curvePoints(batch.strandCount(), batch.curveSubdivisions);
+        gather(batch.across,
+               written(device, "light across hair", HAIRLOOM_ACROSS_CELLS * count, sizeof(std::uint32_t)));
+        isNew = true;
+    }
+    if (auto status = gather.status(); !status) return tl::unexpected(status.error());
+    return isNew;
 }
 
 Status DeviceScene::prepareSurface(gpu::Device& device) {

@@ -53,6 +53,7 @@ shaders::ViewConstants squareConstants(const RendererState& state, const ShadowA
     c.pixelSize = view.spread / static_cast<float>(atlas.side);
     c.minWidth = 1;
     c.fibresForEach = 1 / atlas.share;
+    c.eachHair = square + atlas.close >= atlas.views.size() ? 1 : 0;
     c.samples = 1;
     c.shadows = static_cast<std::uint32_t>(atlas.shadows);
     c.layers = layersOf(state, atlas, view);
@@ -242,6 +243,8 @@ ShadowAtlas lightAtlas(const RendererState& state) {
     for (std::size_t i = 0; i < state.lightViews.size(); ++i) {
         if (castsShadow(state, i)) atlas.views.push_back(&state.lightViews[i]);
     }
+    for (const LightView& view : state.closeViews) atlas.views.push_back(&view);
+    atlas.close = state.closeViews.size();
     return atlas;
 }
 
@@ -323,11 +326,36 @@ shaders::LightConstants lightConstants(const RendererState& state, std::size_t l
         std::size_t square = 0;
         for (std::size_t i = 0; i < light; ++i) square += castsShadow(state, i) ? 1 : 0;
         c = mapConstants(state, lightAtlas(state), square);
+        // One that is no finer tells nothing.
+        if (square < state.closeViews.size() &&
+            state.closeViews[square].spread < state.lightViews[light].spread) {
+            c.closeMap = static_cast<float>(square);
+            c.closeShare = state.closeHair.maps;
+        }
     }
     const Light& source = state.lights[light];
     const bool point = source.kind == LightKind::point;
     c.irradiance = toShader(point ? source.intensity : source.irradiance, 0);
     c.facing_ws = toShader(point ? source.facing_ws : Vec3f(Vec3f::Zero()), 0);
+    return c;
+}
+
+shaders::LightConstants closeMapConstants(const RendererState& state, std::size_t map) {
+    const ShadowAtlas atlas = lightAtlas(state);
+    shaders::LightConstants c = mapConstants(state, atlas, atlas.views.size() - atlas.close + map);
+    const float hair = std::max(state.scene.measure().diameter, 1e-6f);
+    // How hair clumps in a beam matters less the more of it a texel resolves, down to one hair.
+    const float measured = Clumping::kWidths.back();
+    const float resolved =
+        c.texelSize <= hair
+            ? 1.0f
+            : std::clamp(std::log(measured / c.texelSize) / std::log(std::max(measured / hair, 1.01f)), 0.0f,
+                         1.0f);
+    c.stopping += (1 - c.stopping) * resolved;
+    // A texel counts whole fibres or none of them: exp(-s p n / p) of n / p fibres at random, each p of a
+    // texel, is exp(-n) in the mean where (1 - exp(-s p)) / p is 1.
+    const float part = std::clamp(hair / c.texelSize, 1e-3f, 0.98f);
+    c.stopping *= -std::log(1 - part) / part;
     return c;
 }
 

@@ -228,6 +228,11 @@ bool HostCommandList::deferSky(const KernelEntry& kernel) {
 }
 
 bool HostCommandList::deferShading(const KernelEntry& kernel) {
+    if (kernel.name.starts_with("shade_across")) {
+        of(written(0)).shading =
+            std::make_shared<LazyShading>(deferred(kernel), nullptr, of(read(4)).shading);
+        return true;
+    }
     of(written(0)).shading = std::make_shared<LazyShading>(deferred(kernel), of(read(3)).sky);
     return true;
 }
@@ -236,6 +241,7 @@ void HostCommandList::dispatchSorted() {
     const auto& raster = constantsAt<shaders::RasterConstants>(2);
     if (raster.phase == HAIRLOOM_PHASE_LIGHT) {
         hair_.colours.push_back(read(1));
+        hair_.across.push_back(read(5));
         return;
     }
     if (hair_.sorted == nullptr || hair_.sorted->found()) {
@@ -249,16 +255,18 @@ void HostCommandList::dispatchSorted() {
 }
 
 void HostCommandList::resolveSorted() {
-    std::vector<std::span<const float4>> colours;
+    std::vector<HairLight> lights;
     for (std::size_t i = 0; i < hair_.colours.size(); ++i) {
-        HostBuffer& buffer = of(hair_.colours[i]);
+        const gpu::BufferPtr& shown = hair_.sorted->changesAcross(i) ? hair_.across[i] : hair_.colours[i];
+        HostBuffer& buffer = of(shown);
         if (buffer.shading != nullptr) buffer.shading->ensure(hair_.sorted->shownPoints(i));
-        colours.push_back(elementsOf<const float4>(hair_.colours[i]));
+        lights.push_back(
+            {elementsOf<const float4>(hair_.colours[i]), elementsOf<const std::uint32_t>(hair_.across[i])});
     }
     // All of it or nothing joins the sum.
     if (leaves()) return;
     hair_.sorted->resolve(constantsAt<shaders::ResolveConstants>(0), elementsOf<const std::uint32_t>(read(0)),
-                          elementsOf<const std::uint32_t>(read(1)), colours, elementsOf<float4>(written(0)));
+                          elementsOf<const std::uint32_t>(read(1)), lights, elementsOf<float4>(written(0)));
     hair_ = {};
 }
 

@@ -30,6 +30,7 @@ struct HairOfFrame {
     gpu::BufferPtr nearest, cover;
     std::vector<gpu::BufferPtr> curves;   ///< that it reads
     std::vector<gpu::BufferPtr> colours;  ///< of its batches, as their light is asked for
+    std::vector<gpu::BufferPtr> across;   ///< and what of it changes over their width
 };
 
 /// What a device keeps between commands.

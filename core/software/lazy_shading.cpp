@@ -54,8 +54,9 @@ void LazySky::ensureAll() {
     run(threads);
 }
 
-LazyShading::LazyShading(DeferredDispatch work, std::shared_ptr<LazySky> sky)
-    : work_(std::move(work)), sky_(std::move(sky)) {
+LazyShading::LazyShading(DeferredDispatch work, std::shared_ptr<LazySky> sky,
+                         std::shared_ptr<LazyShading> before)
+    : work_(std::move(work)), sky_(std::move(sky)), before_(std::move(before)) {
     done_.assign(constants().count, 0);
 }
 
@@ -78,6 +79,7 @@ void LazyShading::run(std::span<const std::uint32_t> points) {
 }
 
 void LazyShading::ensure(std::span<const std::uint8_t> wanted) {
+    if (before_ != nullptr) before_->ensure(wanted);
     std::vector<std::uint32_t> points;
     for (std::uint32_t i = 0; i < std::min(wanted.size(), done_.size()); ++i) {
         if (wanted[i] != 0 && std::exchange(done_[i], std::uint8_t{1}) == 0) points.push_back(i);

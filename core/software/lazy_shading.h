@@ -39,8 +39,10 @@ class LazySky {
 /// A dispatch of one of the shaders that shade curve points, a thread each.
 class LazyShading {
   public:
-    /// `sky`: what its points see, or nothing.
-    LazyShading(DeferredDispatch work, std::shared_ptr<LazySky> sky);
+    /// `sky`: what its points see, or nothing. `before`: of the same points, what it goes on from, or
+    /// nothing.
+    LazyShading(DeferredDispatch work, std::shared_ptr<LazySky> sky,
+                std::shared_ptr<LazyShading> before = {});
     std::uint32_t count() const { return static_cast<std::uint32_t>(done_.size()); }
     /// `wanted`: 1 for each point whose light is needed.
     void ensure(std::span<const std::uint8_t> wanted);
@@ -54,6 +56,7 @@ class LazyShading {
 
     DeferredDispatch work_;
     std::shared_ptr<LazySky> sky_;
+    std::shared_ptr<LazyShading> before_;
     std::vector<std::uint8_t> done_;
 };
 

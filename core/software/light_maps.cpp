@@ -76,7 +76,7 @@ void LightMaps::forget() {
 
 RibbonBatch LightMaps::thinned(const RibbonBatch& batch) {
     RibbonBatch result = batch;
-    if (batch.curve.empty()) return result;
+    if (batch.curve.empty() || batch.view.eachHair > 0) return result;
     const std::uint32_t strands = batch.curve.back().strand + 1;
     if (strands > kMostStrands) {
         // Strands stand in an order of chance.

@@ -29,6 +29,41 @@ float3 unpackedLight(std::uint32_t packed) {
            scale;
 }
 
+constexpr float kAcrossUnits = 16383;  // they lie in -2 to 2
+
+/// As ribbon_raster.hlsli has them: from side to side, -1 to 1, and half of what a pixel has of that.
+struct AcrossPlace {
+    float middle, reach;
+};
+AcrossPlace placeAcross(const RibbonPiece& piece, float x, float y) {
+    const auto distanceTo = [&](const std::array<float, 3>& border) {
+        return border[0] * (x + 0.5f) + border[1] * (y + 0.5f) + border[2];
+    };
+    const float left = distanceTo(piece.left);
+    const float right = distanceTo(piece.right);
+    const float pixels = max(left + right, 1e-6f);
+    return {clamp((left - right) / pixels, -2.0f, 2.0f), min(1 / pixels, 1.0f)};
+}
+
+/// As across.hlsli has it.
+float3 lightOver(const HairLight& hair, std::uint32_t point, float along, const AcrossPlace& place) {
+    constexpr auto kCells = static_cast<float>(HAIRLOOM_ACROSS_CELLS);
+    const float most = max(place.reach * 0.5f * kCells, 0.5f);
+    const float middle = (0.5f + 0.5f * place.middle) * kCells;
+    const float begin = clamp(middle - most, 0.0f, kCells - 0.5f);
+    const float end = clamp(middle + most, begin + 0.5f, kCells);
+    float3 here(0.0f);
+    float3 next(0.0f);
+    const std::uint32_t* const cells = hair.across.data() + std::size_t{point} * HAIRLOOM_ACROSS_CELLS;
+    for (auto cell = static_cast<std::uint32_t>(begin);
+         cell < HAIRLOOM_ACROSS_CELLS && static_cast<float>(cell) < end; ++cell) {
+        const float part = min(static_cast<float>(cell) + 1, end) - max(static_cast<float>(cell), begin);
+        here += unpackedLight(cells[cell]) * part;
+        next += unpackedLight(cells[HAIRLOOM_ACROSS_CELLS + cell]) * part;
+    }
+    return lerp(here, next, float3(along)) / (end - begin);
+}
+
 /// As resolve_sorted.comp.hlsl has it.
 float3 lightBehind(const float3& nearer, const float3& farther, float through, float least) {
     const float ofHalf = max(-0.5f * std::log(max(through, 1e-4f)), 1e-3f);
@@ -73,6 +108,7 @@ void SortedHair::findIn(std::size_t tile, std::span<const std::uint32_t> nearest
     };
     std::size_t open = pixels;  // that let light through, or have room for fragments
     bool bounded = false;
+    const bool changes = changesAcross(0);
     std::vector<std::uint8_t> closed(pixels, 0);
     const auto visitPixel = [&](const RibbonPiece& piece, std::uint32_t item, const RibbonHits& hits,
                                 std::size_t h) {
@@ -109,7 +145,13 @@ void SortedHair::findIn(std::size_t tile, std::span<const std::uint32_t> nearest
             kept[place] = kept[place - 1];
             --place;
         }
-        kept[place] = {bits, item, along, covers};
+        const AcrossPlace across = changes ? placeAcross(piece, hits.x[h], hits.y[h]) : AcrossPlace{0, 0};
+        kept[place] = {bits,
+                       item,
+                       along,
+                       covers,
+                       static_cast<std::int16_t>(across.middle * kAcrossUnits),
+                       static_cast<std::int16_t>(across.reach * kAcrossUnits)};
         if (closed[pixel] == 0 && count == kFragments && through < kLeastThrough) {
             closed[pixel] = 1;
             --open;
@@ -170,7 +212,7 @@ std::vector<std::uint8_t> SortedHair::shownPoints(std::size_t batch) const {
 }
 
 float4 SortedHair::hairOver(const float4& behind, const Found& found, std::size_t pixel,
-                            std::span<const std::span<const float4>> colours) const {
+                            std::span<const HairLight> hair) const {
     float through = 1;
     float3 light(0.0f);
     float3 halves[2] = {float3(0.0f), float3(0.0f)};
@@ -179,8 +221,12 @@ float4 SortedHair::hairOver(const float4& behind, const Found& found, std::size_
     for (std::size_t k = start; k < found.starts[pixel + 1]; ++k) {
         const Fragment& fragment = found.fragments[k];
         const auto [batch, point] = tiles_->batchAndPoint(fragment.item);
-        const float4* const colour = colours[batch].data() + point;
-        const float3 own = lerp(colour[0].xyz(), colour[1].xyz(), float3(fragment.along));
+        const float4* const mean = hair[batch].mean.data() + point;
+        const float3 own = changesAcross(batch)
+                               ? lightOver(hair[batch], point, fragment.along,
+                                           {static_cast<float>(fragment.across) / kAcrossUnits,
+                                            static_cast<float>(fragment.reach) / kAcrossUnits})
+                               : lerp(mean[0].xyz(), mean[1].xyz(), float3(fragment.along));
         const float3 part = clamp(own, float3(0.0f), float3(65408.0f)) * fragment.cover;
         light += part * through;
         through *= 1.0f - fragment.cover;
@@ -200,8 +246,8 @@ float4 SortedHair::hairOver(const float4& behind, const Found& found, std::size_
 }
 
 void SortedHair::resolve(const shaders::ResolveConstants& how, std::span<const std::uint32_t> nearest,
-                         std::span<const std::uint32_t> light,
-                         std::span<const std::span<const float4>> colours, std::span<float4> sum) const {
+                         std::span<const std::uint32_t> light, std::span<const HairLight> hair,
+                         std::span<float4> sum) const {
     const std::uint32_t samples = how.samples;
     const float4 background(how.background.x, how.background.y, how.background.z, how.background.w);
     parallelFor(tiles_->count(), 4, [&](std::size_t begin, std::size_t end) {
@@ -218,7 +264,7 @@ void SortedHair::resolve(const shaders::ResolveConstants& how, std::span<const s
                         frame += nothing ? background : float4(unpackedLight(light[at * samples + s]), 1.0f);
                     }
                     frame = frame / static_cast<float>(samples);
-                    if (!tiles_->empty(t)) frame = hairOver(frame, found_[t], pixel, colours);
+                    if (!tiles_->empty(t)) frame = hairOver(frame, found_[t], pixel, hair);
                     sum[at] = how.sumBegins != 0 ? frame : sum[at] + frame;
                 }
             }

@@ -11,6 +11,12 @@
 
 namespace hairloom::software {
 
+/// Light of a batch's curve points.
+struct HairLight {
+    std::span<const float4> mean;           ///< of their width
+    std::span<const std::uint32_t> across;  ///< HAIRLOOM_ACROSS_CELLS each, where it changes over that
+};
+
 class SortedHair {
   public:
     /// `stop` leaves tiles of find() out; nothing of it may be shown then.
@@ -24,13 +30,18 @@ class SortedHair {
     /// `cover` of each pixel how much all its hair lets through, where the shader has it.
     void find(std::span<const std::uint32_t> nearest, std::span<std::uint32_t> cover);
 
+    /// A batch has light that changes over its width.
+    bool changesAcross(std::size_t batch) const {
+        return batches_[batch].view.across != HAIRLOOM_ACROSS_NONE;
+    }
+
     /// 1 for each point of a batch whose light some pixel shows; as many as its curve has.
     std::vector<std::uint8_t> shownPoints(std::size_t batch) const;
 
     /// Hair over the mean of the samples, added to the sum of frames, four floats a pixel. `light`: of
-    /// samples, packed; `colours`: of the points of each batch.
+    /// samples, packed; `hair`: of each batch.
     void resolve(const shaders::ResolveConstants& how, std::span<const std::uint32_t> nearest,
-                 std::span<const std::uint32_t> light, std::span<const std::span<const float4>> colours,
+                 std::span<const std::uint32_t> light, std::span<const HairLight> hair,
                  std::span<float4> sum) const;
 
   private:
@@ -39,6 +50,7 @@ class SortedHair {
         std::uint32_t item;   ///< of RibbonTiles
         float along;          ///< 0...1 between the item's point and the next
         float cover;
+        std::int16_t across, reach;  ///< of AcrossPlace, in kAcrossUnits
     };
     /// Of the pixels of a tile, row after row.
     struct Found {
@@ -48,7 +60,7 @@ class SortedHair {
     };
     void findIn(std::size_t tile, std::span<const std::uint32_t> nearest, std::span<std::uint32_t> cover);
     float4 hairOver(const float4& behind, const Found& found, std::size_t pixel,
-                    std::span<const std::span<const float4>> colours) const;
+                    std::span<const HairLight> hair) const;
 
     shaders::RasterConstants raster_;
     Stop stop_;

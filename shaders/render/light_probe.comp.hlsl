@@ -13,7 +13,7 @@ void main(uint3 id : SV_DispatchThreadID) {
     gCases.GetDimensions(count, stride);
     if (id.x >= count) return;
     const LightCase c = gCases[id.x];
-    const Occlusion o = occlusion(gShade.lights[0], c.position_ws.xyz, c.direction.xyz, c.position_ws.w, 0.002,
+    const Occlusion o = occlusionInMap(gShade.lights[0], c.position_ws.xyz, c.direction.xyz, c.position_ws.w, 0.002,
                                     gShade.lights[0].headAbsorption);
     const SkyShares seen = unpackSky(skySeen(c.position_ws.xyz, c.direction.xyz, c.position_ws.w).whole);
     LightAnswer answer;

@@ -45,6 +45,13 @@ float alongPiece(RibbonPiece piece, float2 at) {
     return after / max(after + before, 1e-12);
 }
 
+float pixelsAcross(RibbonPiece piece, float2 at) { return max(distanceTo(piece.left, at) + distanceTo(piece.right, at), 1e-6); }
+
+// From the first side, -1, to the second, 1.
+float placeAcross(RibbonPiece piece, float2 at) {
+    return (distanceTo(piece.left, at) - distanceTo(piece.right, at)) / pixelsAcross(piece, at);
+}
+
 float2 fromOrigin(RibbonPiece piece, int2 pixel) { return float2(pixel - piece.origin) + 0.5; }
 
 // All pixels near the middle line, row by row across its steeper direction.

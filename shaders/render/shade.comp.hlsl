@@ -55,10 +55,11 @@ void main(uint3 id : SV_DispatchThreadID) {
     float3 colour = 0;
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
+        const LightConstants close = gShade.closeMaps[uint(light.closeMap)];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
         const Occlusion shadow =
-            shadowOf(light, occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w * gShade.ownWidth, 0.004, light.headAbsorption));
-        const float3 direct = pow(passed, shadow.fibres) * shadow.visibility;
+            shadowOf(light, occlusion(light, close, p.position_ws.xyz, tangent, p.position_ws.w * gShade.ownWidth, 0.004, light.headAbsorption));
+        const float3 direct = pow(passed, shadow.directFibres) * shadow.visibility;
         const float3 scattered = pow(passed, 0.5 * shadow.fibres) * lerp(0.15, 1.0, shadow.visibility);
         const float3 single = kajiyaSingle(terms, fibre, toLight, toView);
         const float3 multiple = kajiyaMultiple(terms, fibre, toLight);

@@ -38,11 +38,12 @@ void main(uint3 id : SV_DispatchThreadID) {
     float3 colour = 0;
     for (uint i = 0; i < gShade.lightCount; ++i) {
         const LightConstants light = gShade.lights[i];
+        const LightConstants close = gShade.closeMaps[uint(light.closeMap)];
         const float3 toLight = directionToLight(light, p.position_ws.xyz);
-        const Occlusion o = occlusion(light, p.position_ws.xyz, tangent, p.position_ws.w * gShade.ownWidth, 0.004, light.headAbsorption);
+        const Occlusion o = occlusion(light, close, p.position_ws.xyz, tangent, p.position_ws.w * gShade.ownWidth, 0.004, light.headAbsorption);
         const Occlusion shadow = shadowOf(light, o);
         const FibreFrame f = fibreFrame(tangent, toLight, toView);
-        float3 scattered = shadow.passed *
+        float3 scattered = shadow.direct *
                            fibreScattering(gFibre, f, hashUnit(p.strand * 2u), tint, absorption);
 #ifdef HAIRLOOM_DUAL
         if (gridTells(gShade)) scattered += onwardScattering(gFibre, f, shadow.passed, tint, absorption);

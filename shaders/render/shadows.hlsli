@@ -15,6 +15,9 @@ static const float kSkinPatch = 0.05;  // metres: radius of skin that is lit ali
 struct Occlusion {
     float fibres;      // crossed on the way to the light
     float passed;      // share of the light that meets none of them: what single texels let through, for hair has gaps
+    // The same two as the finest map has them: hair near the camera shades its neighbours sharply. What other fibres scatter comes
+    // from around, and asks for the mean of more hair.
+    float directFibres, direct;
     float allFibres;   // from the hair's lit side to its other, or to the head
     float visibility;  // 0 behind the head ... 1
     float ends;        // 1 where the light's way ends on the head
@@ -24,8 +27,8 @@ struct Occlusion {
 // What a light of its own shadows: nothing where shadows are left out. Light from around is still kept off.
 Occlusion shadowOf(LightConstants light, Occlusion o) {
     if (light.withoutShadows == 0.0) return o;
-    o.fibres = 0.0;
-    o.passed = 1.0;
+    o.fibres = o.directFibres = 0.0;
+    o.passed = o.direct = 1.0;
     o.visibility = 1.0;
     return o;
 }
@@ -114,13 +117,13 @@ float splineWeight(int texels, int i, float f) {
     return (1.0 + a * (4.0 + a * (6.0 + a * (4.0 - 4.0 * a)))) / 24.0;
 }
 
-// Biases: metres towards the light, so that a surface does not shadow itself. `along_ws`: of a fibre there, or 0.
+// As one map has it. Biases: metres towards the light, so that a surface does not shadow itself. `along_ws`: of a fibre there, or 0.
 // `headAbsorption`: see throughHead().
-Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, float hairBias, float headBias,
-                    float headAbsorption) {
+Occlusion occlusionInMap(LightConstants light, float3 position_ws, float3 along_ws, float hairBias, float headBias,
+                         float headAbsorption) {
     Occlusion result;
-    result.fibres = 0;
-    result.passed = 1;
+    result.fibres = result.directFibres = 0;
+    result.passed = result.direct = 1;
     result.allFibres = 0;
     result.visibility = 1;
     result.ends = 0;
@@ -178,9 +181,9 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
             }
         }
     }
-    result.fibres = fibres;
+    result.fibres = result.directFibres = fibres;
     if (light.tapDistance > 0.0) passed = lerp(passed, exp(-light.stopping * fibres), min(light.tapDistance, 1.0));
-    result.passed = hair ? passed : 1.0;
+    result.passed = result.direct = hair ? passed : 1.0;
     result.allFibres = max(all, fibres);
     result.visibility = head ? visible : 1.0;
     // A slope gets less light on its area; and from afar the lit skin is a smaller part of what lies around.
@@ -188,6 +191,29 @@ Occlusion occlusion(LightConstants light, float3 position_ws, float3 along_ws, f
     const float facing = texelSize * rsqrt(texelSize * texelSize + dot(rise, rise));
     result.ends = ends;
     result.ground = ends * facing * kSkinPatch * kSkinPatch / (kSkinPatch * kSkinPatch + behind * behind);
+    return result;
+}
+
+// How much of the light at a place the light's close map tells: less where that ends.
+float closeShareAt(LightConstants light, LightConstants close, float3 position_ws) {
+    if (light.closeShare == 0.0) return 0.0;
+    const float4 clip = mul(close.clipFromWorld, float4(position_ws, 1));
+    if (clip.w <= 0.0) return 0.0;
+    const float2 outwards = abs(clip.xy / clip.w);
+    return light.closeShare * saturate(8.0 * (1.0 - max(outwards.x, outwards.y)));
+}
+
+// Likewise, by the map of the whole light, and what is sharp by `close`, the light's close map, where it has one.
+Occlusion occlusion(LightConstants light, LightConstants close, float3 position_ws, float3 along_ws, float hairBias, float headBias,
+                    float headAbsorption) {
+    Occlusion result = occlusionInMap(light, position_ws, along_ws, hairBias, headBias, headAbsorption);
+    const float share = closeShareAt(light, close, position_ws);
+    if (share > 0.0) {
+        const Occlusion finer = occlusionInMap(close, position_ws, along_ws, hairBias, headBias, headAbsorption);
+        result.directFibres = lerp(result.fibres, finer.fibres, share);
+        result.direct = lerp(result.passed, finer.passed, share);
+        result.visibility = lerp(result.visibility, finer.visibility, share);
+    }
     return result;
 }
 #endif

@@ -21,11 +21,11 @@ FibreMoments hairOverSkin(ShadeConstants shade) {
 // hair returns once more.
 float3 throughHair(ShadeConstants shade, Occlusion hair, float3 albedo) {
     const float counted = shade.clumping * hair.fibres;
-    if (shade.ofFibres == 0) return exp(-shade.scattered.rgb * counted);
-    if (gridTells(shade)) return exp(stoppedBy(hairOverSkin(shade)).share * log(clamp(hair.passed, 1e-9, 1.0)));
+    if (shade.ofFibres == 0) return exp(-shade.scattered.rgb * (shade.clumping * hair.directFibres));
+    if (gridTells(shade)) return exp(stoppedBy(hairOverSkin(shade)).share * log(clamp(hair.direct, 1e-9, 1.0)));
     const LayerLight below = lightInLayer(hairOverSkin(shade), counted, counted, albedo);
     const float3 all = below.onward + below.fluence / 3.14159265 + 0.5 * below.flux;
-    return max(all - exp(-counted), 0.0) + hair.passed;
+    return max(all - exp(-counted), 0.0) + hair.direct;
 }
 
 // Light from around that hair and head let through, weighted by the cosine; with what hair over the skin sends back to it.
@@ -68,6 +68,7 @@ float3 skinLight(MeshConstants mesh, float3 position_ws, float3 normal_ws, float
     float3 colour = 0;
     for (uint k = 0; k < gShade.lightCount; ++k) {
         const LightConstants light = gShade.lights[k];
+        const LightConstants close = gShade.closeMaps[uint(light.closeMap)];
         const float3 toLight = directionToLight(light, position_ws);
         const float nl = dot(normal, toLight);
         const float reached = saturate(nl * 8.0 + 0.6);
@@ -75,7 +76,7 @@ float3 skinLight(MeshConstants mesh, float3 position_ws, float3 normal_ws, float
         // Lifted, so that the head does not shadow itself; hair counts down to the skin.
         const float lift = 0.002;
         const Occlusion shadow =
-            shadowOf(light, occlusion(light, position_ws + normal * lift, 0.0, -lift * saturate(nl), 0.002, 0.0));
+            shadowOf(light, occlusion(light, close, position_ws + normal * lift, 0.0, -lift * saturate(nl), 0.002, 0.0));
         // Red light travels farther under the skin. The denominator keeps the energy of a Lambertian.
         const float3 wrap = mesh.wrap * float3(1, 0.5, 0.35);
         const float3 diffuse = saturate((nl + wrap) / ((1 + wrap) * (1 + wrap)));

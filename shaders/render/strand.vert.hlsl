@@ -12,6 +12,8 @@ struct Output {
 #ifndef HAIRLOOM_BLEND
     nointerpolation uint seed : SEED;
 #endif
+    float2 place : PLACE;  // of lightOn()
+    nointerpolation uint2 pieces : PIECES;
 };
 
 Output main(uint vertex : SV_VertexID) {
@@ -24,5 +26,7 @@ Output main(uint vertex : SV_VertexID) {
 #ifndef HAIRLOOM_BLEND
     o.seed = p.strand;
 #endif
+    o.place = float2(float((vertex >> 1u) & 1u), (vertex & 1u) != 0 ? 1.0 : -1.0);
+    o.pieces = uint2(vertex >> 1u, 1u);
     return o;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Weighted blended transparency (McGuire and Bavoil 2013): sums of light times weight, and the product of what each hair
 // lets through. The weight halves with every few millimetres behind where hair begins, as hair in front hides it.
+#include "shaders/render/across_ribbon.hlsli"
 #include "shaders/shared/render_types.h"
 
 cbuffer Constants : register(b0) { ViewConstants gView; };
@@ -9,6 +10,8 @@ struct Input {
     float4 position : SV_Position;
     float3 colour : COLOR;
     float2 coverage : COVERAGE;  // x: of the ribbon by the hair, y: RibbonCorner::depth
+    float2 place : PLACE;
+    nointerpolation uint2 pieces : PIECES;
 };
 
 struct Output {
@@ -23,7 +26,7 @@ Output main(Input i) {
     const float behind = saturate((i.coverage.y - gView.hairBegins) / max(gView.hairDepth, 1e-6));
     const float weight = alpha * exp2(kHalvings * (0.45 - behind));
     Output o;
-    o.sum = float4(i.colour * weight, weight);
+    o.sum = float4(lightOn(gView, i.colour, i.pieces, i.place) * weight, weight);
     o.rest = alpha.xxxx;
     return o;
 }

@@ -12,6 +12,8 @@ struct Output {
 #ifndef HAIRLOOM_BLEND
     nointerpolation uint seed : SEED;
 #endif
+    float2 place : PLACE;  // of lightOn()
+    nointerpolation uint2 pieces : PIECES;
 };
 
 [domain("quad")]
@@ -52,5 +54,7 @@ Output main(PatchFactors factors, float2 place : SV_DomainLocation, const Output
 #ifndef HAIRLOOM_BLEND
     o.seed = c.patch.x;
 #endif
+    o.place = float2(float(segment * gPatch.subdivisions) + at, place.y > 0.5 ? 1.0 : -1.0);
+    o.pieces = uint2(c.patch.y + c.patch.z * gPatch.subdivisions, c.patch.w * gPatch.subdivisions);
     return o;
 }

@@ -3,10 +3,10 @@
 // the next, so that the least depths stand in their order whatever the order of threads; a second phase, which finds the same
 // depths to the bit, writes their light. A fragment's cover is what the ribbon has of a square as wide as the pixel, turned along
 // it: hair of a pixel's width falls off over a pixel to either side, nearly as the filter of averaged frames does.
+#include "shaders/render/across.hlsli"
 #include "shaders/render/fragments.hlsli"
 #include "shaders/render/ribbon_raster.hlsli"
 
-StructuredBuffer<float4> gColour : register(t1);
 StructuredBuffer<uint> gNearest : register(t2);  // of what hides hair
 RWStructuredBuffer<uint> gDepths : register(u0);
 RWStructuredBuffer<uint> gLight : register(u1);
@@ -54,7 +54,7 @@ void visitPixel(RibbonPiece piece, int2 pixel) {
     uint k = 0;
     while (k < HAIRLOOM_FRAGMENTS - 1u && gDepths[base + k] < bits) ++k;
     if (gDepths[base + k] != bits) return;
-    const float3 light = lerp(gColour[piece.first].rgb, gColour[piece.first + 1u].rgb, t);
+    const float3 light = lightOfHair(gView, piece.first, t, placeAcross(piece, at), 1.0 / pixelsAcross(piece, at));
     InterlockedMax(gLight[base + k], packLight(light));
     InterlockedOr(gCover[where * HAIRLOOM_COVER_WORDS + k / 2u], packCover(cover, k));
 }

@@ -81,7 +81,7 @@ float4 main(Input i) : SV_Target0 {
     float openness = 0;
     for (uint k = 0; k < gShade.lightCount; ++k) {
         const LightConstants light = gShade.lights[k];
-        const Occlusion o = occlusion(light, position_ws, 0.0, 0.3 * i.centre_ws.w, 0.002, light.headAbsorption);
+        const Occlusion o = occlusionInMap(light, position_ws, 0.0, 0.3 * i.centre_ws.w, 0.002, light.headAbsorption);
         toLight[k] = directionToLight(light, position_ws);
         irradiance[k] = irradianceOf(light, position_ws);
         const Occlusion shadow = shadowOf(light, o);

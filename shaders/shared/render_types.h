@@ -12,6 +12,8 @@ namespace hairloom::shaders {
 #endif
 
 #define HAIRLOOM_MAX_LIGHTS 16
+#define HAIRLOOM_CLOSE_MAPS 4
+#define HAIRLOOM_ACROSS_CELLS 8  // parts of a hair's width that have light of their own
 
 // Directions that the sky is seen from: the corners of an icosahedron, each with the one across from it.
 #define HAIRLOOM_SKY_MAPS 12
@@ -87,16 +89,20 @@ struct PatchConstants {
 };
 
 // Projection of strands or mesh, for the camera or for a light.
+// Whether hair has light that changes over its width, and how ribbons know where a pixel is on them.
+#define HAIRLOOM_ACROSS_NONE 0
+#define HAIRLOOM_ACROSS_PIECES 1
+#define HAIRLOOM_ACROSS_PATCHES 2
 struct ViewConstants {
     float4x4 clipFromWorld;
     float4 eye_ws;    // w = 1: position of a perspective eye; w = 0: direction towards an orthographic one
     float pixelSize;  // metres, at distance 1 (eye_ws.w = 1) or anywhere (0)
     float minWidth;   // pixels
     float fibresForEach;  // of a light: fibres that each of them stands for
-    float unused0;
+    float eachHair;       // of a light: 1 where single hairs matter, and none may stand for others
     uint samples;  // in a pixel
     uint frame;    // its number
-    uint unused1;
+    uint across;   // of the camera: HAIRLOOM_ACROSS_*
     uint shadows;      // HAIRLOOM_SHADOWS_*
     float4 layers;     // of a light: see LightConstants
     float depthRange;  // of a light: see LightConstants
@@ -130,6 +136,9 @@ struct LightConstants {
     float layerGrowth;     // of their widths from one to the next; 0: early ends (opacity.hlsli)
     // Texels between those that are averaged; below 1 the share of their mean in the light (occlusion()).
     float tapDistance;
+    // Its finer map of what is near the camera, and how much of the light that tells; 0: it has none.
+    float closeMap, closeShare;
+    float unusedMap0, unusedMap1;
 };
 
 // Deep opacity maps of hair and depth maps of the head, as the sky sees them.
@@ -181,11 +190,13 @@ struct ShadeConstants {
     uint rowThreads;    // of the dispatch
     uint subdivisions;  // curve segments per given segment
     float ownWidth;     // of a hair by that of its ribbon, which may stand for several
-    float unused0, unused1, unused2;
+    float acrossShare;  // how much of what changes over a hair's width is shown
+    float unused0, unused1;
     // Of the grid that light between hairs was followed in: lower corner, and w: cells a metre.
     float4 gridOrigin_ws;
     uint4 gridSize;  // cells along x, y and z; w: 1 where there is one
     LightConstants lights[HAIRLOOM_MAX_LIGHTS];
+    LightConstants closeMaps[HAIRLOOM_CLOSE_MAPS];
 };
 
 // What the models of light in fibres take beside their tables.
@@ -193,13 +204,15 @@ struct FibreConstants {
     float rIntensity;
     float ttIntensity;
     float trtIntensity;
-    float unused0;
+    float ior;          // and two more of the section that paths cross
     float4 r;  // Sadeghi's: colour times intensity, linear RGB
     float4 tt;
     float4 trt;
     float minSpread;  // width of the table of wide lobes, radians
     float maxSpread;
-    float unused1, unused2;
+    float azimuthalWidth;  // standard deviation, radians
+    float unused0;
+    float4 absorption;  // per fibre radius, linear RGB
 };
 
 // Where compute kernels that rasterise put what they find.
@@ -417,8 +430,8 @@ static_assert(sizeof(ViewConstants) == 144);
 HAIRLOOM_OFFSET(LightConstants, toLight_ws, 64);
 HAIRLOOM_OFFSET(LightConstants, depthRange, 128);
 HAIRLOOM_OFFSET(LightConstants, layers, 144);
-static_assert(sizeof(LightConstants) == 192);
-static_assert(sizeof(SkyConstants) == 192 * HAIRLOOM_SKY_MAPS);
+static_assert(sizeof(LightConstants) == 208);
+static_assert(sizeof(SkyConstants) == 208 * HAIRLOOM_SKY_MAPS);
 HAIRLOOM_OFFSET(SkyPoint, halved, 16);
 HAIRLOOM_OFFSET(ShadeConstants, primaryExponent, 192);
 HAIRLOOM_OFFSET(ShadeConstants, albedo, 240);
@@ -426,7 +439,7 @@ HAIRLOOM_OFFSET(ShadeConstants, clumping, 320);
 HAIRLOOM_OFFSET(ShadeConstants, count, 352);
 HAIRLOOM_OFFSET(ShadeConstants, gridOrigin_ws, 384);
 HAIRLOOM_OFFSET(ShadeConstants, lights, 416);
-static_assert(sizeof(ShadeConstants) == 416 + 192 * HAIRLOOM_MAX_LIGHTS);
+static_assert(sizeof(ShadeConstants) == 416 + 208 * (HAIRLOOM_MAX_LIGHTS + HAIRLOOM_CLOSE_MAPS));
 HAIRLOOM_OFFSET(LookConstants, gradientStart, 112);
 static_assert(sizeof(LookConstants) == 160);
 static_assert(sizeof(MeshConstants) == 80);
@@ -448,7 +461,7 @@ static_assert(sizeof(OverlayVertex) == 32);
 static_assert(sizeof(LightCase) == 32);
 static_assert(sizeof(LightAnswer) == 48);
 static_assert(sizeof(KajiyaCase) == 48);
-static_assert(sizeof(FibreConstants) == 80);
+static_assert(sizeof(FibreConstants) == 96);
 static_assert(sizeof(FibreCase) == 112);
 }  // namespace hairloom::shaders
 #endif

@@ -22,7 +22,7 @@ def mean_colour_where(image: np.ndarray, coverage: np.ndarray) -> np.ndarray:
     return image[coverage > 0.5].mean(axis=0)
 
 
-def _blurred(image: np.ndarray, radius: int) -> np.ndarray:
+def blurred(image: np.ndarray, radius: int) -> np.ndarray:
     """Box means over (2 radius + 1)² pixels, by running sums."""
     for axis in (0, 1):
         padding = [(0, 0)] * image.ndim
@@ -47,7 +47,7 @@ class Closeness:
 
 
 def closeness(image: np.ndarray, truth: np.ndarray, coverage: np.ndarray) -> Closeness:
-    a, b = _blurred(luminance(image), 4), _blurred(luminance(truth), 4)
+    a, b = blurred(luminance(image), 4), blurred(luminance(truth), 4)
     hair = coverage > 0.5
     top = np.percentile(b[hair], 99)
 

@@ -73,9 +73,10 @@ def write_curves(strands: Strands, root_radius: float, tip_scale: float, folder:
 
 
 class TruthScene:
-    """`view` is the content of a view file; lights may be directional, rectangles, or an environment of one radiance."""
+    """`view` is the content of a view file; lights may be directional, rectangles, or an environment of one radiance.
+    `pixel_filter`: of Mitsuba; a box where nothing is given."""
 
-    def __init__(self, mi, view: dict, eumelanin: float, head: Path, curves: list[Path]):
+    def __init__(self, mi, view: dict, eumelanin: float, head: Path, curves: list[Path], pixel_filter: dict | None = None):
         self.mi = mi
         self.size = view["size"]
         hair = view["hair"]
@@ -103,7 +104,7 @@ class TruthScene:
                     "type": "hdrfilm",
                     "width": self.size[0],
                     "height": self.size[1],
-                    "rfilter": {"type": "box"},
+                    "rfilter": pixel_filter or {"type": "box"},
                     "pixel_format": "rgb",
                 },
             },
@@ -148,14 +149,14 @@ class TruthScene:
             return {"type": "rectangle", "to_world": placed @ size, "emitter": {"type": "area", "radiance": radiance}}
         raise SystemExit(f"error: a light of type {light['type']!r} has no counterpart here")
 
-    def render(self, depth: int, samples: int) -> np.ndarray:
-        """Linear RGB, height × width × 3. Depth 2 is single scattering with opaque shadows."""
+    def render(self, depth: int, samples: int, first_seed: int = 0) -> np.ndarray:
+        """Linear RGB, height × width × 3. Depth 2 is single scattering with opaque shadows. Other seeds give other noise."""
         integrator = self.mi.load_dict(
             {"type": "path", "max_depth": depth, "rr_depth": 1000, "hide_emitters": True}
         )
         image, step = 0.0, 16
         rounds = max(1, samples // step)
-        for seed in range(rounds):
+        for seed in range(first_seed, first_seed + rounds):
             image = image + np.array(
                 self.mi.render(self.scene, integrator=integrator, spp=step, seed=seed)
             )

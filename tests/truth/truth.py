@@ -12,6 +12,7 @@ import numpy as np
 
 import block
 import judge
+import near
 import path_trace
 from hair_file import Strands, read_hair
 
@@ -122,18 +123,23 @@ class Ours:
         return np.array(self.mi.Bitmap(str(exr)))[..., :3].astype(np.float64)
 
 
-def compare(args: argparse.Namespace, ours: Ours) -> list[Verdict]:
+def strands_of(args: argparse.Namespace) -> tuple[Strands, Path]:
+    """Of the groom, and a project of it whose strands are all alike."""
     hair_file = args.out / "strands.hair"
     subprocess.run(
-        [str(args.cli), "export", str(args.groom), "--format", "hair", "-o", str(hair_file)],
+        [str(args.cli), "export", str(args.groom), "--format", "hair", "-o", str(hair_file), "--force"],
         check=True,
         stdout=subprocess.DEVNULL,
     )
     strands = read_hair(hair_file)
     plain = args.out / "plain.hairloom"
     subprocess.run(
-        [str(args.cli), "set", str(args.groom), *PLAIN, "-o", str(plain)], check=True, stdout=subprocess.DEVNULL
+        [str(args.cli), "set", str(args.groom), *PLAIN, "-o", str(plain), "--force"], check=True, stdout=subprocess.DEVNULL
     )
+    return strands, plain
+
+
+def compare(args: argparse.Namespace, ours: Ours, strands: Strands, plain: Path) -> list[Verdict]:
     view = json.loads(args.view.read_text()) if args.view else view_of(strands, args.size)
     if args.size:
         view["size"] = [args.size, args.size]
@@ -202,11 +208,16 @@ def main() -> None:
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     ours = Ours(args.cli, args.out, path_trace.start())
-    verdicts = compare(args, ours)
+    strands, plain = strands_of(args)
+    hair = {**HAIR, "sigma_a_per_radius": (COLOURS["blond"] * ABSORPTION).tolist()}
+    curves = path_trace.write_curves(strands, hair["radius_m"], hair["tip_scale"], args.out / "near_curves")
+    nearby = near.compare(ours, plain, strands, args.head, curves, hair, COLOURS["blond"], args.samples, light_of)
+    (args.out / "near.md").write_text(near.table(nearby))
+    print(near.table(nearby), end="")
+    verdicts = compare(args, ours, strands, plain)
     (args.out / "truth.json").write_text(json.dumps([asdict(v) for v in verdicts], indent=1) + "\n")
     (args.out / "truth.md").write_text(table(verdicts))
     print(table(verdicts), end="")
-    hair = {**HAIR, "sigma_a_per_radius": (COLOURS["blond"] * ABSORPTION).tolist()}
     bands = block.compare(ours, PLAIN, hair, COLOURS["blond"], args.seeds, args.samples)
     (args.out / "block.md").write_text(block.table(bands))
     print(block.table(bands), end="")
